@@ -1,0 +1,228 @@
+//! Which support a step ends on: solve for one, see what is violated, exchange it for a neighbour.
+//!
+//! A support is right when
+//!
+//! ```text
+//! p_n ≥ 0,    the ECP lies inside the support,    n·y ≥ -q⁺_z for every point of the body.
+//! ```
+//!
+//! These are the inequalities of the unreduced problem's complementarity pairs. Exchanging one violated pair at a time is
+//! principal pivoting (Murty 1974); where it cycles, every support is tried in turn.
+
+use crate::contact::{ContactPoints, downward};
+use crate::reduced::{Evaluation, Reduced, Unknowns, solve};
+use crate::step::Step;
+use crate::Vec3;
+use geometry::{Body, Support};
+
+/// How far, over `ℓ`, a point may be below the plane or outside its support: rounding, not physics.
+const INSIDE: f64 = 1e-12;
+/// How negative, over `P`, `p_n` may be.
+const NO_PULL: f64 = 1e-13;
+const MAX_EXCHANGES: usize = 24;
+
+/// Where a step starts its search: the support and the unknowns of the step before.
+#[derive(Debug, Clone, Copy)]
+pub struct Warm {
+    pub support: Support,
+    pub unknowns: Unknowns,
+}
+
+/// The support that was found and its solution.
+#[derive(Debug, Clone, Copy)]
+pub struct Found {
+    pub support: Support,
+    pub at: Evaluation,
+    pub iterations: u32,
+    /// Whether every condition holds.
+    pub right: bool,
+}
+
+enum Verdict {
+    Right,
+    Exchange(Support),
+}
+
+/// The step's solution by exchanging supports from `warm`, or by trying all of them.
+pub fn search(step: &Step, warm: &Warm) -> Found {
+    let mut iterations = 0;
+    let mut visited = [Support::None; MAX_EXCHANGES];
+    let mut support = warm.support;
+    let mut start = warm.unknowns;
+    start.angular = step.state.angular;
+    let mut last = None;
+    for tried in 0..MAX_EXCHANGES {
+        if visited[..tried].contains(&support) {
+            break;
+        }
+        visited[tried] = support;
+        let reduced = solve_support(step, support, &start, &warm.support);
+        iterations += reduced.iterations;
+        last = Some((support, reduced.at));
+        if !reduced.converged {
+            break;
+        }
+        match judge(step, support, &reduced.at) {
+            Verdict::Right => return Found { support, at: reduced.at, iterations, right: true },
+            Verdict::Exchange(next) => {
+                start = fresh_start(step, next, &reduced.at);
+                support = next;
+            }
+        }
+    }
+    try_all(step, warm, &mut iterations).unwrap_or_else(|| {
+        let (support, at) = last.unwrap_or_else(|| {
+            let reduced = solve_support(step, Support::None, &warm.unknowns, &warm.support);
+            (Support::None, reduced.at)
+        });
+        Found { support, at, iterations, right: false }
+    })
+}
+
+/// The first support of the body, in order of dimension, whose solution is right.
+fn try_all(step: &Step, warm: &Warm, iterations: &mut u32) -> Option<Found> {
+    let body = step.body;
+    let points = (0..body.generators().len()).map(|g| Support::Point(g as u16));
+    let lines = body.edges().iter().map(|edge| Support::Line(edge.generators.0, edge.generators.1));
+    let faces = (0..body.faces().len()).map(|f| Support::Face(f as u16));
+    for support in std::iter::once(Support::None).chain(faces).chain(lines).chain(points) {
+        for angular in [step.state.angular, Vec3::zeros()] {
+            let mut start = fresh(step, support);
+            start.angular = angular;
+            let reduced = solve_support(step, support, &start, &warm.support);
+            *iterations += reduced.iterations;
+            if reduced.converged && matches!(judge(step, support, &reduced.at), Verdict::Right) {
+                return Some(Found { support, at: reduced.at, iterations: *iterations, right: true });
+            }
+        }
+    }
+    None
+}
+
+/// Solves for `support`. In the air, `-p_a n` acts at the lowest point after the step: the one that the body hung by
+/// before, if it stays the lowest, else the lowest that is consistent with itself.
+fn solve_support(step: &Step, support: Support, start: &Unknowns, before: &Support) -> Reduced {
+    if support != Support::None || !step.pulls_at_ecp || step.adhesion == 0.0 {
+        return solve(step, support, None, start);
+    }
+    let mut hang = match *before {
+        Support::Point(g) | Support::Line(g, _) => g,
+        Support::Face(face) => step.body.faces()[face as usize].generators[0],
+        Support::None => step.body.lowest(&downward(&step.rotation)).0,
+    };
+    let mut reduced = solve(step, support, Some(hang), start);
+    for _ in 0..4 {
+        let (lowest, point) = step.body.lowest(&downward(&reduced.at.rotation));
+        let drop = reduced.at.arm.z - (reduced.at.rotation * point).z;
+        if !reduced.converged || lowest == hang || drop <= INSIDE * step.size {
+            break;
+        }
+        hang = lowest;
+        let again = solve(step, support, Some(hang), start);
+        reduced = Reduced { iterations: reduced.iterations + again.iterations, ..again };
+    }
+    reduced
+}
+
+/// A start for a support that nothing is known about: the weight, spread evenly.
+fn fresh(step: &Step, support: Support) -> Unknowns {
+    let count = match support {
+        Support::None => 0,
+        Support::Point(_) => 1,
+        Support::Line(..) => 2,
+        Support::Face(_) => 3,
+    };
+    let mut start = Unknowns::at_rest();
+    start.angular = step.state.angular;
+    let share = (step.load.z.abs() + step.pull.z.abs()) / count.max(1) as f64;
+    start.impulses[..count].fill(share);
+    start
+}
+
+/// The start after an exchange: friction as it was, the normal impulse spread evenly over the new support.
+fn fresh_start(step: &Step, next: Support, at: &Evaluation) -> Unknowns {
+    let mut start = fresh(step, next);
+    if at.normal > 0.0 {
+        let total: f64 = start.impulses.iter().sum();
+        if total > 0.0 {
+            for impulse in &mut start.impulses {
+                *impulse *= at.normal / total;
+            }
+        }
+        start.friction = at.unknowns.friction;
+    }
+    start
+}
+
+/// Holds `support`'s solution against the conditions, and names the exchange where one fails.
+fn judge(step: &Step, support: Support, at: &Evaluation) -> Verdict {
+    let body = step.body;
+    let slack = INSIDE * step.size;
+    if support != Support::None {
+        let pull = -step.normal_impulse(at.normal);
+        if pull > NO_PULL * step.load_scale() {
+            return Verdict::Exchange(Support::None);
+        }
+        if let Some(next) = left_support(body, support, at, slack) {
+            return Verdict::Exchange(next);
+        }
+    }
+    match deepest(body, at) {
+        Some((generator, depth)) if depth > slack => Verdict::Exchange(extended(body, support, generator, at)),
+        _ => Verdict::Right,
+    }
+}
+
+/// The neighbour that the ECP has moved to, if it has left `support` by more than `slack`.
+fn left_support(body: &Body, support: Support, at: &Evaluation, slack: f64) -> Option<Support> {
+    match support {
+        Support::None | Support::Point(_) => None,
+        Support::Line(g, h) => {
+            let points = ContactPoints::new(body, support, &at.rotation);
+            let length = (points.y[1] - points.y[0]).norm();
+            let share = at.unknowns.impulses[0] / at.normal;
+            if share * length < -slack {
+                Some(Support::Point(h))
+            } else if (share - 1.0) * length > slack {
+                Some(Support::Point(g))
+            } else {
+                None
+            }
+        }
+        Support::Face(face) => {
+            let point = at.rotation.transpose() * at.arm;
+            let mut worst = (slack, None);
+            for (surface, next) in &body.faces()[face as usize].neighbours {
+                let outside = body.surfaces()[*surface as usize].value(&point);
+                if outside > worst.0 {
+                    worst = (outside, Some(*next));
+                }
+            }
+            worst.1
+        }
+    }
+}
+
+/// The generator that is deepest below the plane.
+fn deepest(body: &Body, at: &Evaluation) -> Option<(u16, f64)> {
+    let (generator, point) = body.lowest(&downward(&at.rotation));
+    let depth = -(at.height + (at.rotation * point).z);
+    depth.is_finite().then_some((generator, depth))
+}
+
+/// `support` with the penetrating `generator` added, or what is left of it where the two share no feature.
+fn extended(body: &Body, support: Support, generator: u16, at: &Evaluation) -> Support {
+    let line = |g: u16, h: u16| if g < h { Support::Line(g, h) } else { Support::Line(h, g) };
+    match support {
+        Support::None | Support::Face(_) => Support::Point(generator),
+        Support::Point(g) if g == generator => Support::Point(g),
+        Support::Point(g) => line(g, generator),
+        Support::Line(g, h) => match body.face_through(g, h, generator) {
+            Some(face) => Support::Face(face),
+            None => {
+                let keep = if at.unknowns.impulses[0].abs() >= at.unknowns.impulses[1].abs() { g } else { h };
+                if keep == generator { Support::Point(generator) } else { line(keep, generator) }
+            }
+        },
+    }
+}

@@ -1,0 +1,49 @@
+//! Dynamics of a tumbling magnetic microrobot on a plane: what a step, a trial and a batch are.
+//!
+//! The equations, with the paper's symbols, are in `docs/model.md`. A step is a mixed nonlinear complementarity problem
+//! ([`problem`]); [`reduced`] and [`exchange`] solve it fast, [`residual`] measures the solution in the unreduced
+//! problem, and [`stepper`] advances the state.
+
+#![forbid(unsafe_code)]
+
+pub mod adhesion;
+pub mod batch;
+pub mod contact;
+pub mod error;
+pub mod exchange;
+pub mod field;
+pub mod friction;
+pub mod general;
+pub mod magnetics;
+pub mod metrics;
+pub mod model;
+pub mod problem;
+pub mod recording;
+pub mod reduced;
+pub mod residual;
+pub mod robot;
+pub mod rotation;
+pub mod solution;
+pub mod state;
+pub mod step;
+pub mod stepper;
+pub mod substrate;
+pub mod trial;
+
+pub use adhesion::Adhesion;
+pub use batch::{Outcome, sweep};
+pub use error::Invalid;
+pub use field::Field;
+pub use metrics::Metrics;
+pub use model::{AdhesionActsAt, AdhesionEnters, MagneticTorque, Model};
+pub use robot::Robot;
+pub use solution::StepSolution;
+pub use state::State;
+pub use stepper::{SolverKind, Stepper};
+pub use substrate::Substrate;
+pub use trial::Trial;
+
+/// A vector of the substrate or of the body frame.
+pub type Vec3 = nalgebra::Vector3<f64>;
+/// A linear map between such vectors.
+pub type Mat3 = nalgebra::Matrix3<f64>;

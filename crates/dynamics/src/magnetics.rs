@@ -1,0 +1,58 @@
+//! The magnetic torque `T_m = M × B` and when in the step it is taken.
+
+use crate::rotation::{cayley, cayley_tangent};
+use crate::{Field, MagneticTorque, Mat3, Vec3};
+
+/// `hT` as a function of the step's angular velocity: `h T = c + w M(αω) × B`, with `M(αω) = Cay(αω) M`.
+#[derive(Debug, Clone, Copy)]
+pub struct TorqueLaw {
+    /// `c`, N m s: the part that is known before the step.
+    known: Vec3,
+    /// `w`, s: the weight of the part that follows the step; zero for the paper's equation.
+    weight: f64,
+    /// `α`, s: how far into the step the moment is turned, `h/2` for its end and `h/4` for its middle.
+    alpha: f64,
+    /// `M` at the start of the step, A m².
+    moment: Vec3,
+    /// `B` where the moment is turned to, T.
+    field: Vec3,
+}
+
+impl TorqueLaw {
+    /// The law for a body at `rotation`, spinning with `omega`, with `moment` in the body frame, at time `t`.
+    pub fn new(when: MagneticTorque, field: &Field, moment: &Vec3, rotation: &Mat3, omega: &Vec3, t: f64, h: f64) -> Self {
+        let moment = rotation * moment;
+        match when {
+            MagneticTorque::StartOfStep => {
+                let known = moment.cross(&field.at(t)) * h;
+                Self { known, weight: 0.0, alpha: 0.0, moment, field: Vec3::zeros() }
+            }
+            MagneticTorque::EndOfStep => {
+                Self { known: Vec3::zeros(), weight: h, alpha: 0.5 * h, moment, field: field.at(t + h) }
+            }
+            MagneticTorque::Midpoint => {
+                let back = cayley(&(omega * (-0.25 * h))) * moment;
+                let known = back.cross(&field.at(t - 0.5 * h)) * (0.5 * h);
+                Self { known, weight: 0.5 * h, alpha: 0.25 * h, moment, field: field.at(t + 0.5 * h) }
+            }
+        }
+    }
+
+    /// `hT` and `h ∂T/∂ω⁺`. From `d(M × B) = (dφ × M) × B = (M Bᵀ - (M·B) 1) dφ`.
+    #[inline]
+    pub fn impulse(&self, omega: &Vec3) -> (Vec3, Mat3) {
+        if self.weight == 0.0 {
+            return (self.known, Mat3::zeros());
+        }
+        let moment = cayley(&(omega * self.alpha)) * self.moment;
+        let by_turn = moment * self.field.transpose() - Mat3::from_diagonal_element(moment.dot(&self.field));
+        let impulse = self.known + moment.cross(&self.field) * self.weight;
+        (impulse, by_turn * cayley_tangent(omega, self.alpha) * self.weight)
+    }
+
+    /// An upper bound of `|hT|`.
+    #[inline]
+    pub fn greatest(&self) -> f64 {
+        self.known.norm() + self.weight * self.moment.norm() * self.field.norm()
+    }
+}

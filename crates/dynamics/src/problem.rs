@@ -1,0 +1,336 @@
+//! The paper's mixed nonlinear complementarity problem of one step, unreduced.
+//!
+//! Unknowns `z = [v⁺; ω⁺; a1; a2; p_t; p_o; p_r | l_1..l_m; l_{m+1}; σ; p_n]`, with `C_F = ∇f_k + Σ_{i≠k} l_i ∇f_i` at
+//! `a1`, `r = a1 - q⁺`, `u = [W_t W_o W_r]ᵀV⁺`:
+//!
+//! ```text
+//! 0 = m (v⁺ - v) - [p_t, p_o, N] - h F_ext
+//! 0 = I (ω⁺ - ω) + h ω × Iω - hT - r × [p_t, p_o, N] - p_r n
+//! 0 = a1 - a2 + l_k C_F
+//! 0 = C_F + l_{m+1} n
+//! 0 = μ e_j² p̄ u_j + p_j σ                      j = t, o, r
+//! 0 ≤ l_i     ⊥ -f_i(a1) ≥ 0
+//! 0 ≤ l_{m+1} ⊥ -g(a2) ≥ 0
+//! 0 ≤ σ       ⊥ (μ p̄)² - Σ (p_j/e_j)² ≥ 0
+//! 0 ≤ p_n     ⊥ max_i f_i(a2) ≥ 0
+//! ```
+//!
+//! Impulses are in units of the load `P` that is known before the step, velocities of `P/m`, lengths of `ℓ`; `p_t`,
+//! `p_o`, `p_r` also of `e_t`, `e_o`, `e_r`, so that the friction rows are alike.
+
+use crate::rotation::{cayley, cayley_tangent};
+use crate::step::Step;
+use crate::{Mat3, StepSolution, Vec3};
+use faer::MatMut;
+use nalgebra::RowVector3;
+
+/// Rows and unknowns before the multipliers.
+pub const FREE: usize = 15;
+
+/// The unreduced problem of a step for the active index `k`.
+#[derive(Debug, Clone, Copy)]
+pub struct StepProblem<'a> {
+    pub step: &'a Step<'a>,
+    pub active: usize,
+}
+
+/// `z` as vectors, in SI units.
+struct Point {
+    linear: Vec3,
+    angular: Vec3,
+    ecp: Vec3,
+    ecp_substrate: Vec3,
+    friction: Vec3,
+    sigma: f64,
+    normal: f64,
+    rotation: Mat3,
+    /// `a1 - q⁺`, `a2 - q⁺`.
+    arm: Vec3,
+    arm_substrate: Vec3,
+}
+
+impl<'a> StepProblem<'a> {
+    pub fn new(step: &'a Step<'a>, active: usize) -> Self {
+        Self { step, active }
+    }
+
+    /// `m`, the number of surfaces.
+    pub fn surfaces(&self) -> usize {
+        self.step.body.surfaces().len()
+    }
+
+    /// `P`, or `m ℓ/h` for a body on which nothing acts.
+    pub fn impulse_unit(&self) -> f64 {
+        let load = self.step.load_scale();
+        if load > 0.0 { load } else { self.step.mass * self.step.size / self.step.h }
+    }
+
+    /// `P/m`.
+    pub fn velocity_unit(&self) -> f64 {
+        self.impulse_unit() / self.step.mass
+    }
+
+    /// `ℓ` over the unit of velocities: from angular velocities to numbers.
+    fn angular_scale(&self) -> f64 {
+        self.step.size / self.velocity_unit()
+    }
+
+    /// The impulse units of `p_t`, `p_o`, `p_r`.
+    fn friction_units(&self) -> Vec3 {
+        self.step.ellipsoid * self.impulse_unit()
+    }
+
+    /// Writes `solution` as `z`.
+    pub fn write(&self, solution: &StepSolution, z: &mut [f64]) {
+        let (m, step) = (self.surfaces(), self.step);
+        let (velocity, impulse) = (self.velocity_unit(), self.impulse_unit());
+        let friction = solution.friction.component_div(&self.friction_units());
+        for i in 0..3 {
+            z[i] = solution.linear[i] / velocity;
+            z[3 + i] = solution.angular[i] * self.angular_scale();
+            z[6 + i] = (solution.ecp[i] - step.state.position[i]) / step.size;
+            z[9 + i] = (solution.ecp_substrate[i] - step.state.position[i]) / step.size;
+            z[12 + i] = friction[i];
+        }
+        z[FREE..FREE + m].copy_from_slice(&solution.multipliers);
+        z[FREE + self.active] /= step.size;
+        z[FREE + m] = solution.plane_multiplier;
+        z[FREE + m + 1] = solution.sigma / velocity;
+        z[FREE + m + 2] = solution.normal / impulse;
+    }
+
+    /// Reads `z` into `solution`.
+    pub fn read(&self, z: &[f64], solution: &mut StepSolution) {
+        let m = self.surfaces();
+        let point = self.point(z);
+        solution.linear = point.linear;
+        solution.angular = point.angular;
+        solution.ecp = point.ecp;
+        solution.ecp_substrate = point.ecp_substrate;
+        solution.friction = point.friction;
+        solution.multipliers.copy_from_slice(&z[FREE..FREE + m]);
+        solution.multipliers[self.active] *= self.step.size;
+        solution.plane_multiplier = z[FREE + m];
+        solution.sigma = point.sigma;
+        solution.normal = point.normal;
+        solution.active = self.active;
+        solution.slip = slip(&point);
+    }
+
+    fn point(&self, z: &[f64]) -> Point {
+        let (m, step) = (self.surfaces(), self.step);
+        let vector = |at: usize| Vec3::new(z[at], z[at + 1], z[at + 2]);
+        let (linear, angular) = (vector(0) * self.velocity_unit(), vector(3) / self.angular_scale());
+        let (ecp, ecp_substrate) = (vector(6) * step.size, vector(9) * step.size);
+        let travel = linear * step.h;
+        Point {
+            linear,
+            angular,
+            ecp: ecp + step.state.position,
+            ecp_substrate: ecp_substrate + step.state.position,
+            friction: vector(12).component_mul(&self.friction_units()),
+            sigma: z[FREE + m + 1] * self.velocity_unit(),
+            normal: z[FREE + m + 2] * self.impulse_unit(),
+            rotation: cayley(&(angular * (0.5 * step.h))) * step.rotation,
+            arm: ecp - travel,
+            arm_substrate: ecp_substrate - travel,
+        }
+    }
+
+    /// `N` at the ECP for `p_n`.
+    fn at_ecp(&self, normal: f64) -> f64 {
+        if self.step.pulls_at_ecp { normal - self.step.adhesion } else { normal }
+    }
+
+    /// `∇f_i` in the substrate frame, at `arm` from the centre of mass.
+    fn gradient(&self, surface: usize, point: &Point, arm: &Vec3) -> Vec3 {
+        point.rotation * self.step.body.surfaces()[surface].gradient(&(point.rotation.transpose() * arm))
+    }
+
+    fn value(&self, surface: usize, point: &Point, arm: &Vec3) -> f64 {
+        self.step.body.surfaces()[surface].value(&(point.rotation.transpose() * arm))
+    }
+
+    /// The weight of `∇f_i` in `C_F`.
+    fn weight(&self, surface: usize, z: &[f64]) -> f64 {
+        if surface == self.active { 1.0 } else { z[FREE + surface] }
+    }
+
+    fn normal_cone(&self, z: &[f64], point: &Point) -> Vec3 {
+        (0..self.surfaces())
+            .filter(|i| self.weight(*i, z) != 0.0)
+            .map(|i| self.gradient(i, point, &point.arm) * self.weight(i, z))
+            .sum()
+    }
+
+    /// Equality rows, then the right-hand sides of the complementarity pairs.
+    pub fn rows(&self, z: &[f64], out: &mut [f64]) {
+        let (m, step) = (self.surfaces(), self.step);
+        let at = self.point(z);
+        let impulse = self.impulse_unit();
+        let contact = Vec3::new(at.friction.x, at.friction.y, self.at_ecp(at.normal));
+        let force = (at.linear - step.state.linear) * step.mass - contact - step.load - step.pull;
+        let (torque, _) = step.torque.impulse(&at.angular);
+        let mut moment = step.inertia * (at.angular - step.state.angular) + step.gyroscopic
+            - torque
+            - at.arm.cross(&contact)
+            - step.pull_moment;
+        moment.z -= at.friction.z;
+
+        let cone = self.normal_cone(z, &at);
+        let apart = (at.arm - at.arm_substrate) / step.size + cone * z[FREE + self.active];
+        let opposed = cone + Vec3::z() * z[FREE + m];
+
+        let bound = step.friction_coefficient * step.bound_impulse(at.normal) / impulse;
+        let slip = slip(&at) / self.velocity_unit();
+        let (e, sigma) = (step.ellipsoid, z[FREE + m + 1]);
+        for i in 0..3 {
+            out[i] = force[i] / impulse;
+            out[3 + i] = moment[i] / (impulse * step.size);
+            out[6 + i] = apart[i];
+            out[9 + i] = opposed[i];
+            out[12 + i] = e[i] * slip[i] * bound + z[12 + i] * sigma;
+        }
+        for i in 0..m {
+            out[FREE + i] = -self.value(i, &at, &at.arm) / step.size;
+        }
+        out[FREE + m] = -at.ecp_substrate.z / step.size;
+        out[FREE + m + 1] = bound * bound - z[12] * z[12] - z[13] * z[13] - z[14] * z[14];
+        out[FREE + m + 2] = self.greatest(&at).1 / step.size;
+    }
+
+    /// The index and value of `max_i f_i(a2)`.
+    fn greatest(&self, point: &Point) -> (usize, f64) {
+        self.step.body.max_value(&(point.rotation.transpose() * point.arm_substrate))
+    }
+
+    /// The Jacobian of [`Self::rows`].
+    pub fn jacobian_of_rows(&self, z: &[f64], mut out: MatMut<'_, f64>) {
+        let (m, step) = (self.surfaces(), self.step);
+        let at = self.point(z);
+        let impulse = self.impulse_unit();
+        let units = self.friction_units();
+        let (multiplier, plane, sigma, normal) = (FREE, FREE + m, FREE + m + 1, FREE + m + 2);
+        out.fill(0.0);
+        let mut put = |row: usize, column: usize, block: &Mat3| {
+            for i in 0..3 {
+                for j in 0..3 {
+                    out[(row + i, column + j)] += block[(i, j)];
+                }
+            }
+        };
+        let turn = cayley_tangent(&at.angular, 0.5 * step.h) / self.angular_scale();
+        // ∂(h v⁺)/∂v⁺ in units.
+        let travel = step.h / self.angular_scale();
+        let arm = at.arm / step.size;
+        let contact = Vec3::new(at.friction.x, at.friction.y, self.at_ecp(at.normal)) / impulse;
+
+        put(0, 0, &Mat3::identity());
+        let (_, torque) = step.torque.impulse(&at.angular);
+        put(3, 3, &((step.inertia - torque) / (impulse * step.size * self.angular_scale())));
+        put(3, 6, &contact.cross_matrix());
+        put(3, 0, &(-contact.cross_matrix() * travel));
+
+        let k = z[multiplier + self.active];
+        let cone = self.normal_cone(z, &at);
+        let mut by_arm = Mat3::zeros();
+        let mut by_turn = Mat3::zeros();
+        for i in 0..m {
+            let weight = self.weight(i, z);
+            if weight == 0.0 {
+                continue;
+            }
+            let body_arm = at.rotation.transpose() * at.arm;
+            let hessian = step.body.surfaces()[i].hessian(&body_arm) * step.size;
+            let curvature = at.rotation * hessian * at.rotation.transpose();
+            let gradient = self.gradient(i, &at, &at.arm);
+            by_arm += curvature * weight;
+            by_turn += (curvature * arm.cross_matrix() - gradient.cross_matrix()) * weight;
+        }
+        put(6, 6, &(Mat3::identity() + by_arm * k));
+        put(6, 9, &-Mat3::identity());
+        put(6, 0, &(-by_arm * (k * travel)));
+        put(6, 3, &(by_turn * turn * k));
+        put(9, 6, &by_arm);
+        put(9, 0, &(-by_arm * travel));
+        put(9, 3, &(by_turn * turn));
+
+        let e = step.ellipsoid;
+        let bound = step.friction_coefficient * step.bound_impulse(at.normal) / impulse;
+        let angular = at.angular * self.angular_scale();
+        let mut slip_by_arm = angular.cross_matrix();
+        let mut slip_by_linear = Mat3::identity() - slip_by_arm * travel;
+        let mut slip_by_angular = -arm.cross_matrix();
+        slip_by_arm.set_row(2, &RowVector3::zeros());
+        slip_by_linear.set_row(2, &RowVector3::zeros());
+        slip_by_angular.set_row(2, &RowVector3::new(0.0, 0.0, 1.0 / step.size));
+        let scale = Mat3::from_diagonal(&(e * bound));
+        put(12, 0, &(scale * slip_by_linear));
+        put(12, 3, &(scale * slip_by_angular));
+        put(12, 6, &(scale * slip_by_arm));
+        put(12, 12, &Mat3::from_diagonal_element(z[sigma]));
+
+        let slip = slip(&at) / self.velocity_unit();
+        let axes = [Vec3::x(), Vec3::y(), Vec3::z()];
+        for i in 0..3 {
+            // p_t, p_o, p_r in the momentum rows.
+            let unit = units[i] / impulse;
+            if i < 2 {
+                out[(i, 12 + i)] -= unit;
+                let lever = arm.cross(&axes[i]) * unit;
+                for j in 0..3 {
+                    out[(3 + j, 12 + i)] -= lever[j];
+                }
+            } else {
+                out[(5, 14)] -= unit / step.size;
+            }
+            let lever = arm.cross(&Vec3::z());
+            out[(3 + i, normal)] -= lever[i];
+            out[(6 + i, multiplier + self.active)] += cone[i];
+            out[(12 + i, sigma)] += z[12 + i];
+            out[(12 + i, normal)] += e[i] * slip[i] * step.friction_coefficient;
+            out[(sigma, 12 + i)] -= 2.0 * z[12 + i];
+        }
+        out[(2, normal)] -= 1.0;
+        out[(11, plane)] += 1.0;
+        for i in 0..m {
+            let gradient = self.gradient(i, &at, &at.arm);
+            if i != self.active {
+                for j in 0..3 {
+                    out[(6 + j, multiplier + i)] += gradient[j] * k;
+                    out[(9 + j, multiplier + i)] += gradient[j];
+                }
+            }
+            put_value_row(&mut out, (multiplier + i, 6), &(-gradient), &arm, &turn, travel);
+        }
+        out[(plane, 11)] -= 1.0;
+        out[(sigma, normal)] += 2.0 * bound * step.friction_coefficient;
+        let (surface, _) = self.greatest(&at);
+        let gradient = self.gradient(surface, &at, &at.arm_substrate);
+        put_value_row(&mut out, (normal, 9), &gradient, &(at.arm_substrate / step.size), &turn, travel);
+    }
+}
+
+/// `∂f(Rᵀ(a - q⁺))` for the gradient `∇f`: by `a` `∇f`, by `v⁺` `-h ∇f`, by `ω⁺` `-(r × ∇f)ᵀ dφ/dω`. `place` is the row,
+/// and the column of `a`.
+fn put_value_row(
+    out: &mut MatMut<'_, f64>,
+    place: (usize, usize),
+    gradient: &Vec3,
+    arm: &Vec3,
+    turn: &Mat3,
+    travel: f64,
+) {
+    let by_angular = -arm.cross(gradient).transpose() * turn;
+    for j in 0..3 {
+        out[(place.0, place.1 + j)] += gradient[j];
+        out[(place.0, j)] -= gradient[j] * travel;
+        out[(place.0, 3 + j)] += by_angular[j];
+    }
+}
+
+/// `u = [W_t W_o W_r]ᵀV⁺`.
+fn slip(at: &Point) -> Vec3 {
+    let surface = at.linear + at.angular.cross(&at.arm);
+    Vec3::new(surface.x, surface.y, at.angular.z)
+}

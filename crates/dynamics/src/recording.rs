@@ -1,0 +1,73 @@
+//! A run, recorded.
+
+use crate::metrics::Gauge;
+use crate::{Metrics, SolverKind, Stepper, Trial};
+use std::ops::ControlFlow;
+
+/// The rows of a run: every `every`-th step, and the start.
+#[derive(Debug, Clone, Default)]
+pub struct Recording {
+    pub time: Vec<f64>,
+    pub position: Vec<[f64; 3]>,
+    /// `w, x, y, z`.
+    pub orientation: Vec<[f64; 4]>,
+    pub linear: Vec<[f64; 3]>,
+    pub angular: Vec<[f64; 3]>,
+    pub ecp: Vec<[f64; 3]>,
+    pub contact_mode: Vec<i8>,
+    pub normal_force: Vec<f64>,
+    /// `λ_t`, `λ_o` (N) and `λ_r` (N m).
+    pub friction_force: Vec<[f64; 3]>,
+    pub adhesion_force: Vec<f64>,
+    pub slip_speed: Vec<f64>,
+    pub residual: Vec<f64>,
+    pub newton_iterations: Vec<i64>,
+}
+
+impl Recording {
+    /// Appends the state of `stepper` and the last step, of length `h`, during which `adhesion` (N s) acted.
+    fn push(&mut self, stepper: &Stepper, h: f64, adhesion: f64) {
+        let (state, solution) = (stepper.state(), stepper.solution());
+        let q = state.orientation;
+        self.time.push(stepper.time());
+        self.position.push(state.position.into());
+        self.orientation.push([q.w, q.i, q.j, q.k]);
+        self.linear.push(state.linear.into());
+        self.angular.push(state.angular.into());
+        self.ecp.push(solution.ecp.into());
+        self.contact_mode.push(solution.patch.mode as i8);
+        self.normal_force.push(solution.normal / h);
+        self.friction_force.push((solution.friction / h).into());
+        self.adhesion_force.push(adhesion / h);
+        self.slip_speed.push(solution.slip.xy().norm());
+        self.residual.push(solution.residual);
+        self.newton_iterations.push(i64::from(solution.iterations));
+    }
+}
+
+/// Runs `trial` and keeps every `every`-th step and the last. `watch` is told the number of steps done and may stop the
+/// run.
+pub fn record(
+    trial: &Trial,
+    kind: SolverKind,
+    every: u64,
+    mut watch: impl FnMut(u64) -> ControlFlow<()>,
+) -> Option<(Recording, Metrics)> {
+    let (h, steps) = (trial.step(), trial.steps());
+    let mut stepper = Stepper::new(trial, kind);
+    let mut gauge = Gauge::new(trial);
+    let mut recording = Recording::default();
+    recording.push(&stepper, h, stepper.adhesion().impulse);
+    for done in 1..=steps {
+        let adhesion = stepper.adhesion().impulse;
+        stepper.advance();
+        gauge.read(&stepper, h);
+        if done % every == 0 || done == steps {
+            recording.push(&stepper, h, adhesion);
+        }
+        if watch(done).is_break() {
+            return None;
+        }
+    }
+    Some((recording, gauge.metrics()))
+}

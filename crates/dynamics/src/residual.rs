@@ -1,0 +1,64 @@
+//! The scaled natural residual of a step in the unreduced problem (`docs/model.md`).
+//!
+//! ```text
+//! P = m|v| + |Iω|/ℓ + h|F_ext| + h|T|/ℓ + p_a + |N| + |p_t| + |p_o|        U = |v⁺| + ℓ|ω⁺| + P/m
+//! ```
+
+use crate::problem::{FREE, StepProblem};
+use crate::step::Step;
+use crate::StepSolution;
+
+/// Storage for the rows of the unreduced problem of one body.
+#[derive(Debug, Clone)]
+pub struct Rows {
+    point: Vec<f64>,
+    rows: Vec<f64>,
+}
+
+impl Rows {
+    /// Storage for a body with `surfaces` surfaces.
+    pub fn new(surfaces: usize) -> Self {
+        let count = FREE + surfaces + 3;
+        Self { point: vec![0.0; count], rows: vec![0.0; count] }
+    }
+
+    /// The greatest scaled row of `solution`.
+    pub fn residual(&mut self, step: &Step, solution: &StepSolution) -> f64 {
+        let problem = StepProblem::new(step, solution.active);
+        problem.write(solution, &mut self.point);
+        problem.rows(&self.point, &mut self.rows);
+        let (z, out, m) = (&self.point, &self.rows, problem.surfaces());
+
+        let at_ecp = if step.pulls_at_ecp { solution.normal - step.adhesion } else { solution.normal };
+        let load = step.mass * step.state.linear.norm()
+            + (step.inertia * step.state.angular).norm() / step.size
+            + step.load.norm()
+            + step.torque.impulse(&solution.angular).0.norm() / step.size
+            + step.adhesion
+            + at_ecp.abs()
+            + solution.friction.xy().abs().sum();
+        let speed = solution.linear.norm() + step.size * solution.angular.norm() + load / step.mass;
+        // P and U in the problem's own units.
+        let p = load / problem.impulse_unit();
+        let u = speed / problem.velocity_unit();
+        if p == 0.0 {
+            return out.iter().fold(0.0, |worst: f64, row| worst.max(row.abs()));
+        }
+        let sigma = z[FREE + m + 1];
+        let mut worst: f64 = 0.0;
+        let mut hold = |value: f64| worst = if value.is_nan() { f64::INFINITY } else { worst.max(value.abs()) };
+        for i in 0..3 {
+            hold(out[i] / p);
+            hold(out[3 + i] / p);
+            hold(out[6 + i]);
+            hold(out[9 + i] / z[FREE + m].max(f64::MIN_POSITIVE));
+            hold(out[12 + i] / (p * u.max(sigma)));
+        }
+        for i in 0..=m {
+            hold(z[FREE + i].min(out[FREE + i]));
+        }
+        hold((sigma / u).min(out[FREE + m + 1] / (p * p)));
+        hold((z[FREE + m + 2] / p).min(out[FREE + m + 2]));
+        worst
+    }
+}

@@ -1,0 +1,62 @@
+//! The solution of one step: every unknown of the paper's problem.
+
+use crate::Vec3;
+use geometry::{Body, Patch, Support};
+
+/// `[V⁺; a1; a2; p_t; p_o; p_r]`, `[l; l_{m+1}; σ; p_n]` and what follows from them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StepSolution {
+    pub linear: Vec3,
+    pub angular: Vec3,
+    /// `a1`, `a2`: the equivalent contact point on the body and on the substrate, m.
+    pub ecp: Vec3,
+    pub ecp_substrate: Vec3,
+    /// `p_t`, `p_o` (N s) and `p_r` (N m s).
+    pub friction: Vec3,
+    /// `l_1..l_m`.
+    pub multipliers: Vec<f64>,
+    /// `l_{m+1}`.
+    pub plane_multiplier: f64,
+    /// `σ`.
+    pub sigma: f64,
+    /// `p_n`, N s.
+    pub normal: f64,
+    /// `k`.
+    pub active: usize,
+    /// `[W_t W_o W_r]ᵀV⁺`.
+    pub slip: Vec3,
+    pub support: Support,
+    pub patch: Patch,
+    /// The scaled natural residual of the unreduced problem.
+    pub residual: f64,
+    /// How far the body's lowest point is below the plane, m.
+    pub penetration: f64,
+    /// Newton iterations, over all supports that were tried.
+    pub iterations: u32,
+    pub converged: bool,
+}
+
+impl StepSolution {
+    /// Storage for the steps of `body`.
+    pub fn for_body(body: &Body) -> Self {
+        Self {
+            linear: Vec3::zeros(),
+            angular: Vec3::zeros(),
+            ecp: Vec3::zeros(),
+            ecp_substrate: Vec3::zeros(),
+            friction: Vec3::zeros(),
+            multipliers: vec![0.0; body.surfaces().len()],
+            plane_multiplier: 0.0,
+            sigma: 0.0,
+            normal: 0.0,
+            active: 0,
+            slip: Vec3::zeros(),
+            support: Support::None,
+            patch: body.patch(Support::None, &-Vec3::z()),
+            residual: 0.0,
+            penetration: 0.0,
+            iterations: 0,
+            converged: true,
+        }
+    }
+}

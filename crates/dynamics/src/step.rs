@@ -1,0 +1,100 @@
+//! The data of one step: what is known before it is solved.
+
+use crate::magnetics::TorqueLaw;
+use crate::rotation::matrix;
+use crate::{Adhesion, AdhesionActsAt, AdhesionEnters, Mat3, State, Trial, Vec3};
+use geometry::Body;
+
+/// Everything that the step from `u` to `u+1` depends on.
+#[derive(Debug, Clone, Copy)]
+pub struct Step<'a> {
+    pub body: &'a Body,
+    pub h: f64,
+    pub mass: f64,
+    /// `ℓ`, the scale of lengths.
+    pub size: f64,
+    /// `R^u`.
+    pub rotation: Mat3,
+    /// `I^u` in the substrate frame.
+    pub inertia: Mat3,
+    pub state: State,
+    /// `h F_ext`.
+    pub load: Vec3,
+    /// `h ω × Iω`.
+    pub gyroscopic: Vec3,
+    pub torque: TorqueLaw,
+    /// `E = diag(e_t, e_o, e_r)`.
+    pub ellipsoid: Vec3,
+    /// `μ`.
+    pub friction_coefficient: f64,
+    /// `p_a`.
+    pub adhesion: f64,
+    /// Whether `p_a` pulls at the ECP, so that `N = p_n - p_a`.
+    pub pulls_at_ecp: bool,
+    /// Whether `p_a` only raises the friction bound.
+    pub raises_bound: bool,
+    /// The impulse and moment of `p_a` at the centroid, zero where it acts at the ECP.
+    pub pull: Vec3,
+    pub pull_moment: Vec3,
+}
+
+impl<'a> Step<'a> {
+    /// The step of `trial` that starts at time `t` in `state`.
+    pub fn new(trial: &'a Trial, state: &State, t: f64, adhesion: &Adhesion) -> Self {
+        let robot = trial.robot();
+        let (h, mass) = (trial.step(), robot.mass());
+        let rotation = matrix(&state.orientation);
+        let inertia = rotation * robot.inertia() * rotation.transpose();
+        let momentum = inertia * state.angular;
+        let model = trial.model();
+        let normal = model.adhesion_enters == AdhesionEnters::Normal;
+        let at_centroid = normal && model.adhesion_acts_at == AdhesionActsAt::PatchCentroid;
+        let (pull, pull_moment) = if at_centroid && adhesion.impulse > 0.0 {
+            let pull = Vec3::new(0.0, 0.0, -adhesion.impulse);
+            (pull, (adhesion.centroid - state.position).cross(&pull))
+        } else {
+            (Vec3::zeros(), Vec3::zeros())
+        };
+        Self {
+            body: robot.body(),
+            h,
+            mass,
+            size: robot.body().size(),
+            rotation,
+            inertia,
+            state: *state,
+            load: trial.load() * h,
+            gyroscopic: state.angular.cross(&momentum) * h,
+            torque: TorqueLaw::new(model.magnetic_torque, trial.field(), robot.moment(), &rotation, &state.angular, t, h),
+            ellipsoid: Vec3::from(trial.substrate().friction_ellipsoid),
+            friction_coefficient: trial.substrate().friction_coefficient,
+            adhesion: adhesion.impulse,
+            pulls_at_ecp: normal && !at_centroid,
+            raises_bound: !normal,
+            pull,
+            pull_moment,
+        }
+    }
+
+    /// `p_n` of the normal impulse `N` at the ECP.
+    #[inline]
+    pub fn normal_impulse(&self, at_ecp: f64) -> f64 {
+        if self.pulls_at_ecp { at_ecp + self.adhesion } else { at_ecp }
+    }
+
+    /// The impulse in the friction bound, `p̄ = p_n`, or `p_n + p_a` while `p_n > 0`.
+    #[inline]
+    pub fn bound_impulse(&self, normal: f64) -> f64 {
+        if self.raises_bound && normal > 0.0 { normal + self.adhesion } else { normal }
+    }
+
+    /// `P` before the contact impulses are known.
+    #[inline]
+    pub fn load_scale(&self) -> f64 {
+        self.mass * self.state.linear.norm()
+            + (self.inertia * self.state.angular).norm() / self.size
+            + self.load.norm()
+            + self.torque.greatest() / self.size
+            + self.adhesion
+    }
+}

@@ -1,0 +1,208 @@
+//! The stepper: solves one step after another and advances the state.
+
+use crate::contact::{ContactPoints, downward};
+use crate::exchange::{Found, Warm, search};
+use crate::general::{General, REQUIRED};
+use crate::reduced::{Evaluation, Unknowns};
+use crate::residual::Rows;
+use crate::rotation::{advance, matrix};
+use crate::step::Step;
+use crate::{Adhesion, State, StepSolution, Trial, Vec3};
+use geometry::{Body, Support};
+
+/// Which solver a step goes to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SolverKind {
+    /// The reduced problem, and the general solver only where that fails.
+    Reduced,
+    /// The unreduced problem, by the general solver alone.
+    General,
+}
+
+/// A trial on its way.
+pub struct Stepper<'a> {
+    trial: &'a Trial,
+    kind: SolverKind,
+    state: State,
+    done: u64,
+    adhesion: Adhesion,
+    warm: Warm,
+    solution: StepSolution,
+    rows: Rows,
+    general: General,
+}
+
+impl<'a> Stepper<'a> {
+    /// A stepper at the start of `trial`.
+    pub fn new(trial: &'a Trial, kind: SolverKind) -> Self {
+        let mut stepper = Self::from_state(trial, kind, *trial.initial(), 0, Adhesion::none(), trial.initial_support());
+        stepper.solution.support = trial.initial_support();
+        stepper.settle(trial.initial_support() != Support::None);
+        let rotation = matrix(&stepper.state.orientation);
+        stepper.solution.ecp = stepper.state.position + rotation * stepper.solution.patch.centroid;
+        stepper
+    }
+
+    /// A stepper in `state` after `done` steps, whose last step left `adhesion` and ended on `support`.
+    pub fn from_state(
+        trial: &'a Trial,
+        kind: SolverKind,
+        state: State,
+        done: u64,
+        adhesion: Adhesion,
+        support: Support,
+    ) -> Self {
+        let body = trial.robot().body();
+        let mut solution = StepSolution::for_body(body);
+        solution.linear = state.linear;
+        solution.angular = state.angular;
+        let unknowns = Unknowns { angular: state.angular, ..Unknowns::at_rest() };
+        Self {
+            trial,
+            kind,
+            state,
+            done,
+            adhesion,
+            warm: Warm { support, unknowns },
+            solution,
+            rows: Rows::new(body.surfaces().len()),
+            general: General::new(body),
+        }
+    }
+
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// The time that has passed, s.
+    pub fn time(&self) -> f64 {
+        self.done as f64 * self.trial.step()
+    }
+
+    /// The solution of the last step.
+    pub fn solution(&self) -> &StepSolution {
+        &self.solution
+    }
+
+    /// The adhesion that the next step will feel.
+    pub fn adhesion(&self) -> &Adhesion {
+        &self.adhesion
+    }
+
+    /// Solves the next step and advances the state by it.
+    pub fn advance(&mut self) -> &StepSolution {
+        let step = Step::new(self.trial, &self.state, self.time(), &self.adhesion);
+        match self.kind {
+            SolverKind::Reduced => self.solve_reduced(&step),
+            SolverKind::General => self.general.solve(&step, &self.warm, &mut self.rows, &mut self.solution),
+        }
+        let h = self.trial.step();
+        self.state.linear = self.solution.linear;
+        self.state.angular = self.solution.angular;
+        self.state.position += self.solution.linear * h;
+        self.state.orientation = advance(&self.state.orientation, &self.solution.angular, h);
+        self.done += 1;
+        self.warm.support = self.solution.support;
+        self.settle(self.solution.normal > 0.0);
+        &self.solution
+    }
+
+    fn solve_reduced(&mut self, step: &Step) {
+        let found = search(step, &self.warm);
+        accept(step, &found, &mut self.solution);
+        self.solution.residual = self.rows.residual(step, &self.solution);
+        self.warm.unknowns = found.at.unknowns;
+        self.solution.converged = found.right && self.solution.residual <= REQUIRED;
+        if !self.solution.converged {
+            self.solve_again(step);
+        }
+    }
+
+    /// The general solver finds what touches where the search did not; the reduced problem then sharpens its solution.
+    #[cold]
+    fn solve_again(&mut self, step: &Step) {
+        let mut other = self.solution.clone();
+        self.general.solve(step, &self.warm, &mut self.rows, &mut other);
+        let warm = Warm { support: other.support, unknowns: Unknowns { angular: other.angular, ..Unknowns::at_rest() } };
+        let found = search(step, &warm);
+        let mut sharpened = other.clone();
+        accept(step, &found, &mut sharpened);
+        sharpened.residual = self.rows.residual(step, &sharpened);
+        sharpened.converged = found.right && sharpened.residual <= REQUIRED;
+        sharpened.iterations += other.iterations;
+        for candidate in [other, sharpened] {
+            let better = candidate.residual < self.solution.residual;
+            if (candidate.converged && !self.solution.converged) || (candidate.converged == self.solution.converged && better) {
+                self.solution = candidate;
+            }
+        }
+    }
+
+    /// Finds what touches now, and the adhesion of the next step from it.
+    fn settle(&mut self, touches: bool) {
+        let body = self.trial.robot().body();
+        let rotation = matrix(&self.state.orientation);
+        let down = downward(&rotation);
+        let support = if touches { self.solution.support } else { Support::None };
+        self.solution.patch = body.patch(support, &down);
+        self.adhesion = if touches {
+            let centroid = self.state.position + rotation * self.solution.patch.centroid;
+            Adhesion::of_patch(self.trial.substrate(), &self.solution.patch, self.trial.step(), centroid)
+        } else {
+            Adhesion::none()
+        };
+    }
+}
+
+/// Every unknown of the unreduced problem from the reduced solution.
+fn accept(step: &Step, found: &Found, solution: &mut StepSolution) {
+    let at = &found.at;
+    let body = step.body;
+    let travelled = step.state.position + at.linear * step.h;
+    solution.linear = at.linear;
+    solution.angular = at.unknowns.angular;
+    solution.support = found.support;
+    solution.iterations = found.iterations;
+    let down = downward(&at.rotation);
+    let (lowest, lowest_point) = body.lowest(&down);
+    let depth = -(travelled.z + (at.rotation * lowest_point).z);
+    solution.penetration = depth.max(0.0);
+
+    let arm = if found.support == Support::None && at.arm == Vec3::zeros() {
+        ContactPoints::of_generator(body, lowest, &at.rotation).0
+    } else {
+        at.arm
+    };
+    let cone_of = if found.support == Support::None { Support::Point(lowest) } else { found.support };
+    solution.ecp = travelled + arm;
+    solution.ecp_substrate = Vec3::new(solution.ecp.x, solution.ecp.y, 0.0);
+    if found.support == Support::None {
+        solution.normal = 0.0;
+        solution.friction = Vec3::zeros();
+        solution.slip = Vec3::zeros();
+        solution.sigma = 0.0;
+    } else {
+        solution.ecp.z = 0.0;
+        solution.normal = step.normal_impulse(at.normal);
+        solution.friction = step.ellipsoid.component_mul(&at.unknowns.friction);
+        solution.slip = at.slip;
+        solution.sigma = if at.slips { step.ellipsoid.component_mul(&at.slip).norm() } else { 0.0 };
+    }
+    normal_cone(body, cone_of, at, &arm, &down, solution);
+}
+
+/// `Σ λ_i ∇f_i(a1) = -n`, scaled to the paper's index: `k = argmax λ`, `l_i = λ_i/λ_k`, `l_k = d λ_k`,
+/// `l_{m+1} = 1/λ_k`.
+fn normal_cone(body: &Body, support: Support, at: &Evaluation, arm: &Vec3, down: &Vec3, solution: &mut StepSolution) {
+    let point = at.rotation.transpose() * arm;
+    let multipliers = &mut solution.multipliers;
+    body.multipliers(support, &point, down, multipliers);
+    let (active, greatest) =
+        multipliers.iter().enumerate().fold((0, 0.0), |best, (i, l)| if *l > best.1 { (i, *l) } else { best });
+    solution.active = active;
+    if greatest > 0.0 {
+        multipliers.iter_mut().for_each(|l| *l /= greatest);
+        multipliers[active] = solution.ecp.z * greatest;
+        solution.plane_multiplier = 1.0 / greatest;
+    }
+}

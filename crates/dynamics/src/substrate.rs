@@ -1,0 +1,32 @@
+//! The substrate: friction, adhesion and electrostatic attraction.
+
+use crate::error::{Invalid, not_negative, positive};
+
+/// What the robot stands on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Substrate {
+    /// `μ`.
+    pub friction_coefficient: f64,
+    /// `e_t`, `e_o` (-) and `e_r` (m).
+    pub friction_ellipsoid: [f64; 3],
+    /// `C`, N/m².
+    pub adhesion: f64,
+    /// `F_elect`, N.
+    pub electrostatic_force: f64,
+    /// Width of the strip that counts as area where a line touches, m.
+    pub line_contact_width: f64,
+}
+
+impl Substrate {
+    /// The substrate itself, or the first of its numbers that is refused.
+    pub fn checked(self) -> Result<Self, Invalid> {
+        not_negative("friction_coefficient", self.friction_coefficient)?;
+        for component in self.friction_ellipsoid {
+            positive("friction_ellipsoid", component)?;
+        }
+        not_negative("adhesion_N_per_m2", self.adhesion)?;
+        not_negative("electrostatic_force_N", self.electrostatic_force)?;
+        not_negative("line_contact_width_m", self.line_contact_width)?;
+        Ok(self)
+    }
+}

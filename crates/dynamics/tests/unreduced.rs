@@ -1,0 +1,114 @@
+//! The reduced solution solves the paper's unreduced problem, and that problem's Jacobian is right.
+
+mod common;
+
+use common::*;
+use faer::Mat;
+use mncp::Problem;
+use proptest::prelude::*;
+use tumblers_dynamics::problem::StepProblem;
+use tumblers_dynamics::step::Step;
+use tumblers_dynamics::trial::TrialParts;
+use tumblers_dynamics::{AdhesionActsAt, AdhesionEnters, MagneticTorque, SolverKind, Stepper, Trial, Vec3};
+
+fn suite() -> Vec<TrialParts> {
+    let mut suite = vec![];
+    for torque in [MagneticTorque::StartOfStep, MagneticTorque::EndOfStep, MagneticTorque::Midpoint] {
+        for frequency in [1.0, 10.0, 15.0] {
+            let mut parts = cuboid_on_paper(0.01, frequency);
+            parts.model.magnetic_torque = torque;
+            parts.duration = 1.2 / frequency;
+            suite.push(parts);
+        }
+    }
+    for degrees in [15f64, 45.0, 60.0] {
+        let mut parts = cuboid_on_paper(0.02, 1.0);
+        (parts.incline, parts.duration) = (degrees.to_radians(), 1.0);
+        suite.push(parts);
+    }
+    for (body, theta2) in [(spiked(4.0), 0.0), (spiked_ends(4.0), 50.0), (spiked(12.0), 200.0), (curved(), 30.0)] {
+        for acts_at in [AdhesionActsAt::Ecp, AdhesionActsAt::PatchCentroid] {
+            for enters in [AdhesionEnters::Normal, AdhesionEnters::FrictionOnly] {
+                let mut parts = pdms(body.clone(), 10.0, theta2);
+                (parts.model.adhesion_acts_at, parts.model.adhesion_enters) = (acts_at, enters);
+                parts.duration = 1.0;
+                suite.push(parts);
+            }
+        }
+    }
+    suite
+}
+
+#[test]
+fn every_step_of_the_suite_solves_the_unreduced_problem() {
+    for parts in suite() {
+        let trial = Trial::new(parts).unwrap();
+        let mut stepper = Stepper::new(&trial, SolverKind::Reduced);
+        run_checked(&mut stepper, &trial, |stepper, solution| {
+            let e = trial.substrate().friction_ellipsoid;
+            let bound = trial.substrate().friction_coefficient * solution.normal;
+            let friction = solution.friction.component_div(&Vec3::from(e));
+            if trial.model().adhesion_enters == AdhesionEnters::Normal {
+                assert!(friction.norm() <= bound * (1.0 + 1e-9) + 1e-22, "outside the ellipsoid");
+            }
+            assert!(solution.friction.dot(&solution.slip) <= 1e-22, "friction feeds the motion");
+            assert!((stepper.state().orientation.norm() - 1.0).abs() < 1e-14);
+        });
+    }
+}
+
+#[test]
+fn the_general_solver_makes_the_same_run() {
+    for mut parts in [cuboid_on_paper(0.01, 5.0), pdms(spiked(4.0), 10.0, 0.0)] {
+        parts.duration = 0.1;
+        let trial = Trial::new(parts).unwrap();
+        let mut fast = Stepper::new(&trial, SolverKind::Reduced);
+        let mut general = Stepper::new(&trial, SolverKind::General);
+        for step in 0..trial.steps() {
+            fast.advance();
+            general.advance();
+            assert!(general.solution().converged, "step {step}: {:e}", general.solution().residual);
+            let (a, b) = (fast.state(), general.state());
+            let size = trial.robot().body().size();
+            assert!((a.position - b.position).norm() < 1e-7 * size, "step {step}");
+            assert!((a.orientation - b.orientation).norm() < 1e-7, "step {step}");
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+    #[test]
+    fn the_jacobian_is_the_derivative(case in 0usize..4, seed in prop::collection::vec(-0.5..0.5f64, 40), active in 0usize..6) {
+        let parts = [
+            cuboid_on_paper(0.01, 5.0), pdms(spiked(4.0), 10.0, 20.0), pdms(curved(), 10.0, 70.0), pdms(spiked_ends(9.0), 5.0, 0.0),
+        ][case].clone();
+        let trial = Trial::new(parts).unwrap();
+        let stepper = Stepper::new(&trial, SolverKind::Reduced);
+        let step = Step::new(&trial, stepper.state(), 0.01, stepper.adhesion());
+        let problem = StepProblem::new(&step, active.min(trial.robot().body().surfaces().len() - 1));
+        let n = problem.equalities() + problem.pairs();
+        let z: Vec<f64> = (0..n).map(|i| seed[i] + if i + 1 == n { 1.0 } else { 0.0 }).collect();
+        let mut jacobian = Mat::zeros(n, n);
+        problem.jacobian(&z, jacobian.as_mut());
+        let rows = |z: &[f64]| {
+            let mut out = vec![0.0; n];
+            problem.residual(z, &mut out);
+            out
+        };
+        let e = 1e-6;
+        for j in 0..n {
+            let (mut up, mut down) = (z.clone(), z.clone());
+            up[j] += e;
+            down[j] -= e;
+            let (up, down) = (rows(&up), rows(&down));
+            for i in 0..n {
+                let numeric = (up[i] - down[i]) / (2.0 * e);
+                // The greatest f_i may change within the difference.
+                let kink = i + 1 == n;
+                let scale = 1.0 + numeric.abs();
+                prop_assert!(kink || (numeric - jacobian[(i, j)]).abs() < 1e-5 * scale, "row {i} column {j}: {numeric} {}", jacobian[(i, j)]);
+            }
+        }
+    }
+}

@@ -1,0 +1,38 @@
+//! `Field`.
+
+use crate::convert::refused;
+use dynamics::{Field, Vec3};
+use pyo3::prelude::*;
+
+#[pyclass(name = "Field", module = "tumblers._core", frozen)]
+pub struct PyField(pub Field);
+
+#[pymethods]
+impl PyField {
+    #[staticmethod]
+    fn rotating(
+        strength_T: f64,
+        frequency_Hz: f64,
+        rotation_axis: [f64; 3],
+        initial_direction: [f64; 3],
+    ) -> PyResult<Self> {
+        let field = Field::rotating(strength_T, frequency_Hz, rotation_axis.into(), initial_direction.into());
+        field.map(Self).map_err(refused)
+    }
+
+    #[staticmethod]
+    fn uniform(strength_T: f64, direction: [f64; 3]) -> PyResult<Self> {
+        Field::constant(strength_T, direction.into()).map(Self).map_err(refused)
+    }
+
+    #[staticmethod]
+    fn table(time_s: Vec<f64>, field_T: Vec<[f64; 3]>) -> PyResult<Self> {
+        let fields: Vec<Vec3> = field_T.into_iter().map(Vec3::from).collect();
+        Field::table(&time_s, &fields).map(Self).map_err(refused)
+    }
+
+    /// `B(t)`, T.
+    fn at(&self, time_s: f64) -> [f64; 3] {
+        self.0.at(time_s).into()
+    }
+}

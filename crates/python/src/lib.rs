@@ -1,0 +1,23 @@
+//! `tumblers._core`: conversions and forwarding.
+
+mod body;
+mod convert;
+#[allow(non_snake_case)] // keywords carry their SI units, and T and Hz have capitals
+mod field;
+mod run;
+mod step;
+#[allow(non_snake_case)]
+mod trial;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_class::<body::PyBody>()?;
+    module.add_class::<field::PyField>()?;
+    module.add_class::<trial::PyTrial>()?;
+    module.add_function(wrap_pyfunction!(run::simulate, module)?)?;
+    module.add_function(wrap_pyfunction!(run::sweep, module)?)?;
+    module.add_function(wrap_pyfunction!(step::step, module)?)?;
+    Ok(())
+}

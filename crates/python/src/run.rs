@@ -1,0 +1,143 @@
+//! `simulate` and `sweep`.
+
+use crate::convert::{refused, solver, table};
+use crate::trial::PyTrial;
+use dynamics::batch::{Control, Outcome, sweep as run_batch};
+use dynamics::recording::record;
+use dynamics::{Metrics, Trial};
+use numpy::IntoPyArray;
+use pyo3::exceptions::PyKeyboardInterrupt;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::ops::ControlFlow;
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+/// How often a run looks for Ctrl-C and reports its progress.
+const LOOK: Duration = Duration::from_millis(50);
+/// How many steps are made between two looks at the clock.
+const STEPS_BETWEEN_CLOCKS: u64 = 256;
+
+#[pyfunction]
+#[pyo3(signature = (trial, every, solver="reduced", on_progress=None))]
+pub fn simulate<'py>(
+    py: Python<'py>,
+    trial: &PyTrial,
+    every: u64,
+    solver: &str,
+    on_progress: Option<Py<PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let kind = self::solver(solver)?;
+    if every == 0 {
+        return Err(refused("every is 0, expected 1 or more"));
+    }
+    let mut interrupted = None;
+    let mut looked = Instant::now();
+    let recorded = py.detach(|| {
+        record(&trial.0, kind, every, |done| {
+            if done % STEPS_BETWEEN_CLOCKS != 0 || looked.elapsed() < LOOK {
+                return ControlFlow::Continue(());
+            }
+            looked = Instant::now();
+            match Python::attach(|py| report(py, on_progress.as_ref(), done)) {
+                Ok(()) => ControlFlow::Continue(()),
+                Err(error) => {
+                    interrupted = Some(error);
+                    ControlFlow::Break(())
+                }
+            }
+        })
+    });
+    let Some((recording, metrics)) = recorded else {
+        return Err(interrupted.unwrap_or_else(|| PyKeyboardInterrupt::new_err(())));
+    };
+    report(py, on_progress.as_ref(), trial.0.steps())?;
+    let out = PyDict::new(py);
+    out.set_item("position_m", table(py, &recording.position)?)?;
+    out.set_item("orientation", table(py, &recording.orientation)?)?;
+    out.set_item("linear_velocity_m_per_s", table(py, &recording.linear)?)?;
+    out.set_item("angular_velocity_rad_per_s", table(py, &recording.angular)?)?;
+    out.set_item("ecp_m", table(py, &recording.ecp)?)?;
+    out.set_item("friction_force_N", table(py, &recording.friction_force)?)?;
+    out.set_item("time_s", recording.time.into_pyarray(py))?;
+    out.set_item("contact_mode", recording.contact_mode.into_pyarray(py))?;
+    out.set_item("normal_force_N", recording.normal_force.into_pyarray(py))?;
+    out.set_item("adhesion_force_N", recording.adhesion_force.into_pyarray(py))?;
+    out.set_item("slip_speed_m_per_s", recording.slip_speed.into_pyarray(py))?;
+    out.set_item("residual", recording.residual.into_pyarray(py))?;
+    out.set_item("newton_iterations", recording.newton_iterations.into_pyarray(py))?;
+    out.set_item("twist_rad", metrics.twist)?;
+    out.set_item("drift_m", metrics.drift)?;
+    out.set_item("speed_m_per_s", metrics.speed)?;
+    out.set_item("unconverged_steps", metrics.unconverged_steps)?;
+    out.set_item("max_residual", metrics.max_residual)?;
+    out.set_item("max_penetration_m", metrics.max_penetration)?;
+    Ok(out)
+}
+
+#[pyfunction]
+#[pyo3(signature = (trials, threads=0, on_progress=None))]
+pub fn sweep<'py>(
+    py: Python<'py>,
+    trials: Vec<PyRef<'py, PyTrial>>,
+    threads: usize,
+    on_progress: Option<Py<PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let trials: Vec<Trial> = trials.iter().map(|trial| trial.0.clone()).collect();
+    let control = Control::default();
+    let outcomes = py.detach(|| {
+        std::thread::scope(|scope| {
+            let batch = scope.spawn(|| run_batch(&trials, threads, &control));
+            let mut interrupted = None;
+            while !batch.is_finished() {
+                std::thread::park_timeout(LOOK);
+                let finished = control.finished.load(Ordering::Relaxed);
+                if let Err(error) = Python::attach(|py| report(py, on_progress.as_ref(), finished as u64)) {
+                    control.stop.store(true, Ordering::Relaxed);
+                    interrupted = Some(error);
+                    break;
+                }
+            }
+            let outcomes = batch.join().map_err(|_| refused("the batch panicked outside its trials"))?;
+            interrupted.map_or_else(|| outcomes.map_err(refused), Err)
+        })
+    })?;
+    report(py, on_progress.as_ref(), trials.len() as u64)?;
+    let metrics: Vec<Option<Metrics>> = outcomes
+        .iter()
+        .map(|outcome| if let Outcome::Done(metrics) = outcome { Some(*metrics) } else { None })
+        .collect();
+    let number = |of: fn(&Metrics) -> f64| -> Vec<f64> {
+        metrics.iter().map(|metrics| metrics.as_ref().map_or(f64::NAN, of)).collect()
+    };
+    let count = |of: fn(&Metrics) -> u64| -> Vec<i64> {
+        metrics.iter().map(|metrics| metrics.as_ref().map_or(0, of) as i64).collect()
+    };
+    let errors: Vec<Option<String>> = outcomes
+        .iter()
+        .map(|outcome| match outcome {
+            Outcome::Done(_) => None,
+            Outcome::Failed(message) => Some(message.clone()),
+            Outcome::Stopped => Some("stopped before its end".to_owned()),
+        })
+        .collect();
+    let out = PyDict::new(py);
+    out.set_item("twist_rad", number(|m| m.twist).into_pyarray(py))?;
+    out.set_item("drift_m", number(|m| m.drift).into_pyarray(py))?;
+    out.set_item("speed_m_per_s", number(|m| m.speed).into_pyarray(py))?;
+    out.set_item("max_residual", number(|m| m.max_residual).into_pyarray(py))?;
+    out.set_item("max_penetration_m", number(|m| m.max_penetration).into_pyarray(py))?;
+    out.set_item("unconverged_steps", count(|m| m.unconverged_steps).into_pyarray(py))?;
+    out.set_item("newton_iterations", count(|m| m.newton_iterations).into_pyarray(py))?;
+    out.set_item("error", errors)?;
+    Ok(out)
+}
+
+/// Raises a pending Ctrl-C, then tells `on_progress` how much is done.
+fn report(py: Python<'_>, on_progress: Option<&Py<PyAny>>, done: u64) -> PyResult<()> {
+    py.check_signals()?;
+    if let Some(callback) = on_progress {
+        callback.call1(py, (done,))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,103 @@
+"""Guesses of what touches at the end of a step.
+
+The body's anchors (corners, lowest points of arcs and ellipsoids) are taken as frictionless point contacts of a step
+linearised about the current guess; friction is lagged. Each pass is a least-distance problem::
+
+    min ½ ΔVᵀ M ΔV   with   z_j + h [n; y_j × n] · ΔV ≥ 0
+
+solved by non-negative least squares (Lawson and Hanson, Solving Least Squares Problems, chapter 23).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import nnls, root  # type: ignore[import-untyped]
+
+from .array import Array
+from .linearised import Guess, friction_impulse, lift, load_impulse, mass_matrix
+from .problem import NORMAL, StepProblem
+from .rotation import cross
+
+
+@dataclass(frozen=True, eq=False)
+class Prediction:
+    """A guess and the surfaces common to all points that carry load; no surface where none is common."""
+
+    surfaces: frozenset[int]
+    loaded: bool
+    guess: Guess
+
+
+def free_motion(problem: StepProblem, start: Array | None = None) -> Array:
+    """`V⁺`, shape (6,), with neither contact nor adhesion at the closest point."""
+    linear = problem.linear / problem.mass
+    unit = load_impulse(problem) / (problem.mass * problem.body.radius)
+    scale = problem.mass * problem.body.radius**2 * unit
+
+    def rows(x: Array) -> Array:
+        omega = x * unit
+        return np.asarray((problem.inertia @ omega - problem.angular - problem.h * problem.torque(omega)) / scale)
+
+    first = problem.state.angular_velocity if start is None else start[3:]
+    found = root(rows, first / unit, options={"xtol": 1e-14})
+    x = np.asarray(found.x)
+    for _ in range(2):
+        jacobian = np.stack([(rows(x + d) - rows(x - d)) / 2e-6 for d in 1e-6 * np.eye(3)], axis=1)
+        x = x - np.linalg.solve(jacobian, rows(x))
+    return np.concatenate([linear, x * unit])
+
+
+def predictions(problem: StepProblem, free: Array, passes: int = 8) -> list[Prediction]:
+    """One prediction a pass, the last first."""
+    h, body = problem.h, problem.body
+    V, p, ecp = free.copy(), np.zeros(3), np.zeros(3)
+    found: list[Prediction] = []
+    normal = 0.0
+    for _ in range(passes):
+        position, rotation = problem.pose(V)
+        anchors = list(body.anchors(rotation))
+        y = np.array([rotation @ anchor.point for anchor in anchors])
+        inverse = np.linalg.inv(mass_matrix(problem, V))
+        factor = np.linalg.cholesky(0.5 * (inverse + inverse.T))
+        r = y[int(np.argmin(y[:, 2]))] if normal <= 0.0 else ecp
+        adhesion = problem.p_a if problem.adhesion_at_ecp else 0.0
+        missing = -problem.momentum(V, r, -adhesion, p)
+        V_free = V + inverse @ missing
+        jacobian = np.array([np.concatenate([NORMAL, cross(point, NORMAL)]) for point in y])
+        lack = -(position[2] + y[:, 2] + h * jacobian @ (V_free - V)) / h
+        impulses, change = _least_distance(jacobian @ factor, lack)
+        V = V_free + factor @ change
+        normal = float(impulses.sum())
+        loaded = impulses > 1e-9 * max(normal, 1e-300)
+        if normal <= 0.0:
+            low = anchors[int(np.argmin(y[:, 2]))]
+            found.append(Prediction(low.surfaces, False, Guess(V, y[int(np.argmin(y[:, 2]))], np.zeros(3), 0.0)))
+            p = np.zeros(3)
+            continue
+        ecp = np.asarray(impulses @ y / normal)
+        common = frozenset.intersection(*(a.surfaces for a, on in zip(anchors, loaded, strict=True) if on))
+        without = np.asarray(V - inverse @ lift(r) @ p)
+        p, _ = friction_impulse(problem, inverse, without, ecp, normal + adhesion)
+        found.append(Prediction(common, True, Guess(V, ecp, p, normal)))
+    return found[::-1]
+
+
+def _least_distance(rows: Array, bound: Array) -> tuple[Array, Array]:
+    """Multipliers, shape (k,), and `x` of `min |x|` with `rows x ≥ bound`; rows (k, n), bound (k,)."""
+    if (bound <= 0.0).all():
+        return np.zeros(len(bound)), np.zeros(rows.shape[1])
+    size_rows, size_bound = float(np.abs(rows).max()), float(np.abs(bound).max())
+    matrix = np.vstack([rows.T / size_rows, bound / size_bound])
+    target = np.zeros(len(matrix))
+    target[-1] = 1.0
+    try:
+        u, _ = nnls(matrix, target)
+    except RuntimeError:
+        return np.zeros(len(bound)), np.zeros(rows.shape[1])
+    rest = matrix @ u - target
+    if abs(float(rest[-1])) < 1e-12:
+        return np.zeros(len(bound)), np.zeros(rows.shape[1])
+    x = -rest[:-1] / rest[-1] * size_bound / size_rows
+    return np.asarray(u / -rest[-1] * size_bound / size_rows**2), x
