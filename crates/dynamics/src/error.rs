@@ -52,5 +52,9 @@ pub fn direction(name: &'static str, value: crate::Vec3) -> Result<crate::Vec3, 
         finite(name, *component)?;
     }
     let length = value.norm();
-    if length > 0.0 && length.is_finite() { Ok(value / length) } else { Err(Invalid::NoDirection { name, found: length }) }
+    if length > 0.0 && length.is_finite() {
+        Ok(value / length)
+    } else {
+        Err(Invalid::NoDirection { name, found: length })
+    }
 }

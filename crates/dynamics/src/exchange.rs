@@ -9,10 +9,10 @@
 //! These are the inequalities of the unreduced problem's complementarity pairs. Exchanging one violated pair at a time is
 //! principal pivoting (Murty 1974); where it cycles, every support is tried in turn.
 
+use crate::Vec3;
 use crate::contact::{ContactPoints, downward};
 use crate::reduced::{Evaluation, Reduced, Unknowns, solve};
 use crate::step::Step;
-use crate::Vec3;
 use geometry::{Body, Support};
 
 /// How far, over `ℓ`, a point may be below the plane or outside its support: rounding, not physics.

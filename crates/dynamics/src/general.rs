@@ -3,11 +3,12 @@
 //! The unreduced problem goes to `mncp` as it stands. The index `k` of an active constraint has to be chosen before:
 //! the surfaces are tried in the order of how far they face the substrate.
 
-use crate::contact::downward;
+use crate::contact::{ContactPoints, downward};
 use crate::exchange::Warm;
 use crate::problem::{FREE, StepProblem};
 use crate::residual::Rows;
 use crate::rotation::cayley;
+use crate::solution::set_normal_cone;
 use crate::step::Step;
 use crate::{StepSolution, Vec3};
 use faer::MatMut;
@@ -25,7 +26,7 @@ impl Problem for StepProblem<'_> {
     }
 
     fn pairs(&self) -> usize {
-        self.surfaces() + 3
+        self.surfaces() + 2
     }
 
     fn residual(&self, z: &[f64], out: &mut [f64]) {
@@ -45,45 +46,62 @@ pub struct General {
     best: StepSolution,
 }
 
+impl Clone for General {
+    /// New storage of the same size: what a solve leaves in it is of no use to the next.
+    fn clone(&self) -> Self {
+        Self::with(self.best.clone())
+    }
+}
+
 impl General {
     pub fn new(body: &Body) -> Self {
-        let surfaces = body.surfaces().len();
-        let settings = Settings { tolerance: REQUIRED * 1e-2, ..Settings::default() };
-        let solver = Solver::new(FREE, surfaces + 3, settings).expect("the settings above are in their ranges");
-        Self {
-            solver,
-            point: vec![0.0; FREE + surfaces + 3],
-            order: vec![(0.0, 0); surfaces],
-            best: StepSolution::for_body(body),
-        }
+        Self::with(StepSolution::for_body(body))
     }
 
-    /// The best solution over the choices of `k`; the first that reaches the required residual ends the search.
+    fn with(best: StepSolution) -> Self {
+        let surfaces = best.multipliers.len();
+        let settings = Settings { tolerance: REQUIRED * 1e-2, ..Settings::default() };
+        let solver = Solver::new(FREE, surfaces + 2, settings).expect("the settings above are in their ranges");
+        Self { solver, point: vec![0.0; FREE + surfaces + 2], order: vec![(0.0, 0); surfaces], best }
+    }
+
+    /// The best solution over the starts; the first that reaches the required residual ends the search. The starts are the
+    /// contact of the step before, then every choice of `k` with and without a normal impulse.
     pub fn solve(&mut self, step: &Step, warm: &Warm, rows: &mut Rows, solution: &mut StepSolution) {
         self.rank_surfaces(step);
-        let mut iterations = 0;
         self.best.residual = f64::INFINITY;
-        'search: for touching in [warm.support != Support::None, warm.support == Support::None] {
+        let touched = warm.support != Support::None;
+        start_on(step, warm.support, touched, solution);
+        let mut iterations = self.attempt(step, rows, solution);
+        for touching in [touched, !touched] {
             for i in 0..self.order.len() {
-                let problem = StepProblem::new(step, self.order[i].1);
-                self.start(&problem, touching, solution);
-                // The start has the right length and is finite, which is all that the solver asks of it.
-                let Ok(solved) = self.solver.solve(&problem, &mut self.point) else { continue };
-                iterations += solved.iterations as u32;
-                problem.read(&self.point, solution);
-                solution.residual = rows.residual(step, solution);
-                if solution.residual < self.best.residual {
-                    self.best.clone_from(solution);
-                }
                 if self.best.residual <= REQUIRED {
-                    break 'search;
+                    break;
                 }
+                start_on(step, Support::None, touching, solution);
+                solution.multipliers.fill(0.0);
+                solution.active = self.order[i].1;
+                iterations += self.attempt(step, rows, solution);
             }
         }
         solution.clone_from(&self.best);
         solution.iterations = iterations;
         solution.converged = solution.residual <= REQUIRED;
         read_support(step, solution);
+    }
+
+    /// Solves from `solution` and keeps the result where it is the best so far.
+    fn attempt(&mut self, step: &Step, rows: &mut Rows, solution: &mut StepSolution) -> u32 {
+        let problem = StepProblem::new(step, solution.active);
+        problem.write(solution, &mut self.point);
+        // The start has the right length and is finite, which is all that the solver asks of it.
+        let Ok(solved) = self.solver.solve(&problem, &mut self.point) else { return 0 };
+        problem.read(&self.point, solution);
+        solution.residual = rows.residual(step, solution);
+        if solution.residual < self.best.residual {
+            self.best.clone_from(solution);
+        }
+        solved.iterations as u32
     }
 
     /// Orders the surfaces by how far they face the substrate at the start of the step.
@@ -96,24 +114,30 @@ impl General {
         }
         self.order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
     }
+}
 
-    /// The velocity as it was, the lowest point as the ECP, the weight as the normal impulse.
-    fn start(&mut self, problem: &StepProblem, touching: bool, solution: &mut StepSolution) {
-        let step = problem.step;
-        let (_, lowest) = step.body.lowest(&downward(&step.rotation));
-        let ecp = step.state.position + step.rotation * lowest;
-        solution.linear = if touching { step.state.linear } else { step.state.linear + step.load / step.mass };
-        solution.angular = step.state.angular;
-        solution.ecp = ecp;
-        solution.ecp_substrate = Vec3::new(ecp.x, ecp.y, 0.0);
-        solution.friction = Vec3::zeros();
-        solution.multipliers.fill(0.0);
-        solution.multipliers[problem.active] = ecp.z.max(0.0);
-        solution.plane_multiplier = 1.0;
-        solution.sigma = 0.0;
-        solution.normal = if touching { step.normal_impulse(step.load.z.abs()) } else { 0.0 };
-        problem.write(solution, &mut self.point);
-    }
+/// A start: the velocity as it was, the middle of `support` (or the lowest point) as the ECP, the normal cone there, and
+/// the weight as the normal impulse of a body that is `touching`.
+fn start_on(step: &Step, support: Support, touching: bool, solution: &mut StepSolution) {
+    let body = step.body;
+    let down = downward(&step.rotation);
+    let (lowest, lowest_point) = body.lowest(&down);
+    let points = ContactPoints::new(body, support, &step.rotation);
+    let (support, arm) = if points.count > 0 {
+        (support, points.y[..points.count].iter().sum::<Vec3>() / points.count as f64)
+    } else {
+        (Support::Point(lowest), step.rotation * lowest_point)
+    };
+    let ecp = step.state.position + arm;
+    solution.linear = if touching { step.state.linear } else { step.state.linear + step.load / step.mass };
+    solution.angular = step.state.angular;
+    solution.ecp = ecp;
+    solution.friction = Vec3::zeros();
+    solution.sigma = 0.0;
+    solution.normal = if touching { step.normal_impulse(step.load.z.abs()) } else { 0.0 };
+    let rotation = step.rotation;
+    set_normal_cone(body, support, &(rotation.transpose() * arm), &down, solution);
+    solution.ecp_substrate = Vec3::new(ecp.x, ecp.y, 0.0);
 }
 
 /// What touches in a solution of the unreduced problem.

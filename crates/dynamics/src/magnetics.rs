@@ -20,7 +20,15 @@ pub struct TorqueLaw {
 
 impl TorqueLaw {
     /// The law for a body at `rotation`, spinning with `omega`, with `moment` in the body frame, at time `t`.
-    pub fn new(when: MagneticTorque, field: &Field, moment: &Vec3, rotation: &Mat3, omega: &Vec3, t: f64, h: f64) -> Self {
+    pub fn new(
+        when: MagneticTorque,
+        field: &Field,
+        moment: &Vec3,
+        rotation: &Mat3,
+        omega: &Vec3,
+        t: f64,
+        h: f64,
+    ) -> Self {
         let moment = rotation * moment;
         match when {
             MagneticTorque::StartOfStep => {

@@ -1,6 +1,6 @@
 //! The paper's mixed nonlinear complementarity problem of one step, unreduced.
 //!
-//! Unknowns `z = [v⁺; ω⁺; a1; a2; p_t; p_o; p_r | l_1..l_m; l_{m+1}; σ; p_n]`, with `C_F = ∇f_k + Σ_{i≠k} l_i ∇f_i` at
+//! Unknowns `z = [v⁺; ω⁺; a1; a2; p_t; p_o; p_r; l_k | l_i, i≠k; l_{m+1}; σ; p_n]`, with `C_F = ∇f_k + Σ_{i≠k} l_i ∇f_i` at
 //! `a1`, `r = a1 - q⁺`, `u = [W_t W_o W_r]ᵀV⁺`:
 //!
 //! ```text
@@ -9,11 +9,16 @@
 //! 0 = a1 - a2 + l_k C_F
 //! 0 = C_F + l_{m+1} n
 //! 0 = μ e_j² p̄ u_j + p_j σ                      j = t, o, r
-//! 0 ≤ l_i     ⊥ -f_i(a1) ≥ 0
+//! 0 = -f_k(a1)
+//! 0 ≤ l_i     ⊥ -f_i(a1) ≥ 0                    i ≠ k
 //! 0 ≤ l_{m+1} ⊥ -g(a2) ≥ 0
 //! 0 ≤ σ       ⊥ (μ p̄)² - Σ (p_j/e_j)² ≥ 0
 //! 0 ≤ p_n     ⊥ max_i f_i(a2) ≥ 0
 //! ```
+//!
+//! The paper pairs `l_k ≥ 0` with `-f_k(a1) ≥ 0` too, although `k` is active by its definition. As a pair it lets `a1 = a2`
+//! lie below the surface `k`, with `l_k = 0`: the body sinks in. `f_k = 0` excludes that, and `l_k ≥ 0` follows from the last
+//! pair.
 //!
 //! Impulses are in units of the load `P` that is known before the step, velocities of `P/m`, lengths of `ℓ`; `p_t`,
 //! `p_o`, `p_r` also of `e_t`, `e_o`, `e_r`, so that the friction rows are alike.
@@ -23,9 +28,12 @@ use crate::step::Step;
 use crate::{Mat3, StepSolution, Vec3};
 use faer::MatMut;
 use nalgebra::RowVector3;
+use std::cmp::Ordering;
 
-/// Rows and unknowns before the multipliers.
-pub const FREE: usize = 15;
+/// Equality rows and free unknowns, `l_k` the last of them.
+pub const FREE: usize = 16;
+/// Where `l_k` and the row of `f_k` are.
+const ACTIVE: usize = FREE - 1;
 
 /// The unreduced problem of a step for the active index `k`.
 #[derive(Debug, Clone, Copy)]
@@ -57,6 +65,23 @@ impl<'a> StepProblem<'a> {
     /// `m`, the number of surfaces.
     pub fn surfaces(&self) -> usize {
         self.step.body.surfaces().len()
+    }
+
+    /// Where `l_i` and the row of `f_i` are.
+    #[inline]
+    pub fn slot(&self, surface: usize) -> usize {
+        match surface.cmp(&self.active) {
+            Ordering::Less => FREE + surface,
+            Ordering::Equal => ACTIVE,
+            Ordering::Greater => ACTIVE + surface,
+        }
+    }
+
+    /// Where `l_{m+1}`, `σ` and `p_n` and their rows are.
+    #[inline]
+    pub fn last_slots(&self) -> (usize, usize, usize) {
+        let first = ACTIVE + self.surfaces();
+        (first, first + 1, first + 2)
     }
 
     /// `P`, or `m ℓ/h` for a body on which nothing acts.
@@ -92,11 +117,14 @@ impl<'a> StepProblem<'a> {
             z[9 + i] = (solution.ecp_substrate[i] - step.state.position[i]) / step.size;
             z[12 + i] = friction[i];
         }
-        z[FREE..FREE + m].copy_from_slice(&solution.multipliers);
-        z[FREE + self.active] /= step.size;
-        z[FREE + m] = solution.plane_multiplier;
-        z[FREE + m + 1] = solution.sigma / velocity;
-        z[FREE + m + 2] = solution.normal / impulse;
+        for i in 0..m {
+            z[self.slot(i)] = solution.multipliers[i];
+        }
+        z[ACTIVE] /= step.size;
+        let (plane, sigma, normal) = self.last_slots();
+        z[plane] = solution.plane_multiplier;
+        z[sigma] = solution.sigma / velocity;
+        z[normal] = solution.normal / impulse;
     }
 
     /// Reads `z` into `solution`.
@@ -108,9 +136,11 @@ impl<'a> StepProblem<'a> {
         solution.ecp = point.ecp;
         solution.ecp_substrate = point.ecp_substrate;
         solution.friction = point.friction;
-        solution.multipliers.copy_from_slice(&z[FREE..FREE + m]);
+        for i in 0..m {
+            solution.multipliers[i] = z[self.slot(i)];
+        }
         solution.multipliers[self.active] *= self.step.size;
-        solution.plane_multiplier = z[FREE + m];
+        solution.plane_multiplier = z[self.last_slots().0];
         solution.sigma = point.sigma;
         solution.normal = point.normal;
         solution.active = self.active;
@@ -118,7 +148,8 @@ impl<'a> StepProblem<'a> {
     }
 
     fn point(&self, z: &[f64]) -> Point {
-        let (m, step) = (self.surfaces(), self.step);
+        let step = self.step;
+        let (_, sigma, normal) = self.last_slots();
         let vector = |at: usize| Vec3::new(z[at], z[at + 1], z[at + 2]);
         let (linear, angular) = (vector(0) * self.velocity_unit(), vector(3) / self.angular_scale());
         let (ecp, ecp_substrate) = (vector(6) * step.size, vector(9) * step.size);
@@ -129,8 +160,8 @@ impl<'a> StepProblem<'a> {
             ecp: ecp + step.state.position,
             ecp_substrate: ecp_substrate + step.state.position,
             friction: vector(12).component_mul(&self.friction_units()),
-            sigma: z[FREE + m + 1] * self.velocity_unit(),
-            normal: z[FREE + m + 2] * self.impulse_unit(),
+            sigma: z[sigma] * self.velocity_unit(),
+            normal: z[normal] * self.impulse_unit(),
             rotation: cayley(&(angular * (0.5 * step.h))) * step.rotation,
             arm: ecp - travel,
             arm_substrate: ecp_substrate - travel,
@@ -153,7 +184,7 @@ impl<'a> StepProblem<'a> {
 
     /// The weight of `∇f_i` in `C_F`.
     fn weight(&self, surface: usize, z: &[f64]) -> f64 {
-        if surface == self.active { 1.0 } else { z[FREE + surface] }
+        if surface == self.active { 1.0 } else { z[self.slot(surface)] }
     }
 
     fn normal_cone(&self, z: &[f64], point: &Point) -> Vec3 {
@@ -165,9 +196,10 @@ impl<'a> StepProblem<'a> {
 
     /// Equality rows, then the right-hand sides of the complementarity pairs.
     pub fn rows(&self, z: &[f64], out: &mut [f64]) {
-        let (m, step) = (self.surfaces(), self.step);
+        let step = self.step;
         let at = self.point(z);
         let impulse = self.impulse_unit();
+        let (plane_slot, sigma_slot, normal_slot) = self.last_slots();
         let contact = Vec3::new(at.friction.x, at.friction.y, self.at_ecp(at.normal));
         let force = (at.linear - step.state.linear) * step.mass - contact - step.load - step.pull;
         let (torque, _) = step.torque.impulse(&at.angular);
@@ -178,12 +210,12 @@ impl<'a> StepProblem<'a> {
         moment.z -= at.friction.z;
 
         let cone = self.normal_cone(z, &at);
-        let apart = (at.arm - at.arm_substrate) / step.size + cone * z[FREE + self.active];
-        let opposed = cone + Vec3::z() * z[FREE + m];
+        let apart = (at.arm - at.arm_substrate) / step.size + cone * z[ACTIVE];
+        let opposed = cone + Vec3::z() * z[plane_slot];
 
         let bound = step.friction_coefficient * step.bound_impulse(at.normal) / impulse;
         let slip = slip(&at) / self.velocity_unit();
-        let (e, sigma) = (step.ellipsoid, z[FREE + m + 1]);
+        let (e, sigma) = (step.ellipsoid, z[sigma_slot]);
         for i in 0..3 {
             out[i] = force[i] / impulse;
             out[3 + i] = moment[i] / (impulse * step.size);
@@ -191,12 +223,12 @@ impl<'a> StepProblem<'a> {
             out[9 + i] = opposed[i];
             out[12 + i] = e[i] * slip[i] * bound + z[12 + i] * sigma;
         }
-        for i in 0..m {
-            out[FREE + i] = -self.value(i, &at, &at.arm) / step.size;
+        for i in 0..self.surfaces() {
+            out[self.slot(i)] = -self.value(i, &at, &at.arm) / step.size;
         }
-        out[FREE + m] = -at.ecp_substrate.z / step.size;
-        out[FREE + m + 1] = bound * bound - z[12] * z[12] - z[13] * z[13] - z[14] * z[14];
-        out[FREE + m + 2] = self.greatest(&at).1 / step.size;
+        out[plane_slot] = -at.ecp_substrate.z / step.size;
+        out[sigma_slot] = bound * bound - z[12] * z[12] - z[13] * z[13] - z[14] * z[14];
+        out[normal_slot] = self.greatest(&at).1 / step.size;
     }
 
     /// The index and value of `max_i f_i(a2)`.
@@ -210,7 +242,7 @@ impl<'a> StepProblem<'a> {
         let at = self.point(z);
         let impulse = self.impulse_unit();
         let units = self.friction_units();
-        let (multiplier, plane, sigma, normal) = (FREE, FREE + m, FREE + m + 1, FREE + m + 2);
+        let (plane, sigma, normal) = self.last_slots();
         out.fill(0.0);
         let mut put = |row: usize, column: usize, block: &Mat3| {
             for i in 0..3 {
@@ -231,7 +263,7 @@ impl<'a> StepProblem<'a> {
         put(3, 6, &contact.cross_matrix());
         put(3, 0, &(-contact.cross_matrix() * travel));
 
-        let k = z[multiplier + self.active];
+        let k = z[ACTIVE];
         let cone = self.normal_cone(z, &at);
         let mut by_arm = Mat3::zeros();
         let mut by_turn = Mat3::zeros();
@@ -286,7 +318,7 @@ impl<'a> StepProblem<'a> {
             }
             let lever = arm.cross(&Vec3::z());
             out[(3 + i, normal)] -= lever[i];
-            out[(6 + i, multiplier + self.active)] += cone[i];
+            out[(6 + i, ACTIVE)] += cone[i];
             out[(12 + i, sigma)] += z[12 + i];
             out[(12 + i, normal)] += e[i] * slip[i] * step.friction_coefficient;
             out[(sigma, 12 + i)] -= 2.0 * z[12 + i];
@@ -297,11 +329,11 @@ impl<'a> StepProblem<'a> {
             let gradient = self.gradient(i, &at, &at.arm);
             if i != self.active {
                 for j in 0..3 {
-                    out[(6 + j, multiplier + i)] += gradient[j] * k;
-                    out[(9 + j, multiplier + i)] += gradient[j];
+                    out[(6 + j, self.slot(i))] += gradient[j] * k;
+                    out[(9 + j, self.slot(i))] += gradient[j];
                 }
             }
-            put_value_row(&mut out, (multiplier + i, 6), &(-gradient), &arm, &turn, travel);
+            put_value_row(&mut out, (self.slot(i), 6), &(-gradient), &arm, &turn, travel);
         }
         out[(plane, 11)] -= 1.0;
         out[(sigma, normal)] += 2.0 * bound * step.friction_coefficient;

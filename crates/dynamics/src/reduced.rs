@@ -261,18 +261,17 @@ fn assemble<const N: usize>(
         }
         for (j, by) in arm_by_impulse[..count].iter().enumerate() {
             let moved = w.cross(by);
-            let by_impulse = scaled_slip * Vec3::new(moved.x, moved.y, 0.0) + friction.by_bound * step.friction_coefficient;
+            let by_impulse =
+                scaled_slip * Vec3::new(moved.x, moved.y, 0.0) + friction.by_bound * step.friction_coefficient;
             for i in 0..3 {
                 jacobian[(3 + count + i, 3 + j)] = by_impulse[i];
             }
         }
         // φ enters v through E φ / m, and the moment through r × (p_t, p_o, 0) + p_r n.
-        let by_friction = friction.by_friction + scaled_slip * Mat3::from_diagonal(&Vec3::new(e.x, e.y, 0.0)) / step.mass;
-        let lever = [
-            Vec3::new(0.0, -arm.z, arm.y) * e.x,
-            Vec3::new(arm.z, 0.0, -arm.x) * e.y,
-            Vec3::new(0.0, 0.0, -1.0) * e.z,
-        ];
+        let by_friction =
+            friction.by_friction + scaled_slip * Mat3::from_diagonal(&Vec3::new(e.x, e.y, 0.0)) / step.mass;
+        let lever =
+            [Vec3::new(0.0, -arm.z, arm.y) * e.x, Vec3::new(arm.z, 0.0, -arm.x) * e.y, Vec3::new(0.0, 0.0, -1.0) * e.z];
         for j in 0..3 {
             for i in 0..3 {
                 jacobian[(3 + count + i, 3 + count + j)] = by_friction[(i, j)];

@@ -4,9 +4,9 @@
 //! P = m|v| + |Iω|/ℓ + h|F_ext| + h|T|/ℓ + p_a + |N| + |p_t| + |p_o|        U = |v⁺| + ℓ|ω⁺| + P/m
 //! ```
 
+use crate::StepSolution;
 use crate::problem::{FREE, StepProblem};
 use crate::step::Step;
-use crate::StepSolution;
 
 /// Storage for the rows of the unreduced problem of one body.
 #[derive(Debug, Clone)]
@@ -18,7 +18,7 @@ pub struct Rows {
 impl Rows {
     /// Storage for a body with `surfaces` surfaces.
     pub fn new(surfaces: usize) -> Self {
-        let count = FREE + surfaces + 3;
+        let count = FREE + surfaces + 2;
         Self { point: vec![0.0; count], rows: vec![0.0; count] }
     }
 
@@ -27,7 +27,8 @@ impl Rows {
         let problem = StepProblem::new(step, solution.active);
         problem.write(solution, &mut self.point);
         problem.rows(&self.point, &mut self.rows);
-        let (z, out, m) = (&self.point, &self.rows, problem.surfaces());
+        let (z, out) = (&self.point, &self.rows);
+        let (plane, slip, normal) = problem.last_slots();
 
         let at_ecp = if step.pulls_at_ecp { solution.normal - step.adhesion } else { solution.normal };
         let load = step.mass * step.state.linear.norm()
@@ -44,21 +45,25 @@ impl Rows {
         if p == 0.0 {
             return out.iter().fold(0.0, |worst: f64, row| worst.max(row.abs()));
         }
-        let sigma = z[FREE + m + 1];
+        let sigma = z[slip];
         let mut worst: f64 = 0.0;
         let mut hold = |value: f64| worst = if value.is_nan() { f64::INFINITY } else { worst.max(value.abs()) };
         for i in 0..3 {
             hold(out[i] / p);
             hold(out[3 + i] / p);
             hold(out[6 + i]);
-            hold(out[9 + i] / z[FREE + m].max(f64::MIN_POSITIVE));
+            hold(out[9 + i] / z[plane].max(f64::MIN_POSITIVE));
             hold(out[12 + i] / (p * u.max(sigma)));
         }
-        for i in 0..=m {
-            hold(z[FREE + i].min(out[FREE + i]));
+        // The paper's pair of l_k, and the row that makes k active.
+        hold(out[problem.slot(solution.active)]);
+        for i in 0..problem.surfaces() {
+            let slot = problem.slot(i);
+            hold(z[slot].min(out[slot]));
         }
-        hold((sigma / u).min(out[FREE + m + 1] / (p * p)));
-        hold((z[FREE + m + 2] / p).min(out[FREE + m + 2]));
+        hold(z[plane].min(out[plane]));
+        hold((sigma / u).min(out[slip] / (p * p)));
+        hold((z[normal] / p).min(out[normal]));
         worst
     }
 }

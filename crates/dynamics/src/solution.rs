@@ -60,3 +60,19 @@ impl StepSolution {
         }
     }
 }
+
+/// Sets the multipliers of `solution` at its ECP, `point` in the body frame, from `Σ λ_i ∇f_i(a1) = -n`: with the paper's
+/// index, `k = argmax λ`, `l_i = λ_i/λ_k`, `l_k = d λ_k`, `l_{m+1} = 1/λ_k`. `down` is `-n` in the body frame.
+pub fn set_normal_cone(body: &Body, support: Support, point: &Vec3, down: &Vec3, solution: &mut StepSolution) {
+    let multipliers = &mut solution.multipliers;
+    body.multipliers(support, point, down, multipliers);
+    let (active, greatest) =
+        multipliers.iter().enumerate().fold((0, 0.0), |best, (i, l)| if *l > best.1 { (i, *l) } else { best });
+    solution.active = active;
+    solution.plane_multiplier = 1.0;
+    if greatest > 0.0 {
+        multipliers.iter_mut().for_each(|l| *l /= greatest);
+        multipliers[active] = solution.ecp.z * greatest;
+        solution.plane_multiplier = 1.0 / greatest;
+    }
+}

@@ -3,12 +3,13 @@
 use crate::contact::{ContactPoints, downward};
 use crate::exchange::{Found, Warm, search};
 use crate::general::{General, REQUIRED};
-use crate::reduced::{Evaluation, Unknowns};
+use crate::reduced::Unknowns;
 use crate::residual::Rows;
 use crate::rotation::{advance, matrix};
+use crate::solution::set_normal_cone;
 use crate::step::Step;
 use crate::{Adhesion, State, StepSolution, Trial, Vec3};
-use geometry::{Body, Support};
+use geometry::Support;
 
 /// Which solver a step goes to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,6 +21,7 @@ pub enum SolverKind {
 }
 
 /// A trial on its way.
+#[derive(Clone)]
 pub struct Stepper<'a> {
     trial: &'a Trial,
     kind: SolverKind,
@@ -68,6 +70,11 @@ impl<'a> Stepper<'a> {
             rows: Rows::new(body.surfaces().len()),
             general: General::new(body),
         }
+    }
+
+    /// The same stepper with another solver for the steps to come.
+    pub fn with_solver(self, kind: SolverKind) -> Self {
+        Self { kind, ..self }
     }
 
     pub fn state(&self) -> &State {
@@ -123,7 +130,8 @@ impl<'a> Stepper<'a> {
     fn solve_again(&mut self, step: &Step) {
         let mut other = self.solution.clone();
         self.general.solve(step, &self.warm, &mut self.rows, &mut other);
-        let warm = Warm { support: other.support, unknowns: Unknowns { angular: other.angular, ..Unknowns::at_rest() } };
+        let warm =
+            Warm { support: other.support, unknowns: Unknowns { angular: other.angular, ..Unknowns::at_rest() } };
         let found = search(step, &warm);
         let mut sharpened = other.clone();
         accept(step, &found, &mut sharpened);
@@ -132,7 +140,9 @@ impl<'a> Stepper<'a> {
         sharpened.iterations += other.iterations;
         for candidate in [other, sharpened] {
             let better = candidate.residual < self.solution.residual;
-            if (candidate.converged && !self.solution.converged) || (candidate.converged == self.solution.converged && better) {
+            if (candidate.converged && !self.solution.converged)
+                || (candidate.converged == self.solution.converged && better)
+            {
                 self.solution = candidate;
             }
         }
@@ -188,21 +198,5 @@ fn accept(step: &Step, found: &Found, solution: &mut StepSolution) {
         solution.slip = at.slip;
         solution.sigma = if at.slips { step.ellipsoid.component_mul(&at.slip).norm() } else { 0.0 };
     }
-    normal_cone(body, cone_of, at, &arm, &down, solution);
-}
-
-/// `Σ λ_i ∇f_i(a1) = -n`, scaled to the paper's index: `k = argmax λ`, `l_i = λ_i/λ_k`, `l_k = d λ_k`,
-/// `l_{m+1} = 1/λ_k`.
-fn normal_cone(body: &Body, support: Support, at: &Evaluation, arm: &Vec3, down: &Vec3, solution: &mut StepSolution) {
-    let point = at.rotation.transpose() * arm;
-    let multipliers = &mut solution.multipliers;
-    body.multipliers(support, &point, down, multipliers);
-    let (active, greatest) =
-        multipliers.iter().enumerate().fold((0, 0.0), |best, (i, l)| if *l > best.1 { (i, *l) } else { best });
-    solution.active = active;
-    if greatest > 0.0 {
-        multipliers.iter_mut().for_each(|l| *l /= greatest);
-        multipliers[active] = solution.ecp.z * greatest;
-        solution.plane_multiplier = 1.0 / greatest;
-    }
+    set_normal_cone(body, cone_of, &(at.rotation.transpose() * arm), &down, solution);
 }

@@ -1,8 +1,8 @@
 //! One trial: a robot on a substrate in a field, for a time.
 
+use crate::contact::downward;
 use crate::error::{Invalid, direction, finite, not_negative, positive};
 use crate::rotation::matrix;
-use crate::contact::downward;
 use crate::{Field, MagneticTorque, Model, Robot, State, Substrate, Vec3};
 use geometry::Support;
 use nalgebra::Quaternion;

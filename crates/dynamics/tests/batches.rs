@@ -21,9 +21,7 @@ fn bits(outcome: &Outcome) -> [u64; 5] {
 #[test]
 fn the_bits_do_not_depend_on_the_threads() {
     let trials = trials();
-    let run = |threads| -> Vec<_> {
-        sweep(&trials, threads, &Control::default()).unwrap().iter().map(bits).collect()
-    };
+    let run = |threads| -> Vec<_> { sweep(&trials, threads, &Control::default()).unwrap().iter().map(bits).collect() };
     let one = run(1);
     assert_eq!(one, run(2));
     assert_eq!(one, run(4));

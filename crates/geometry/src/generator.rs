@@ -181,6 +181,15 @@ impl Generator {
         }
     }
 
+    /// How far the generator reaches along a direction.
+    #[inline]
+    pub(crate) fn height(&self, direction: &Vector3<f64>) -> f64 {
+        match self {
+            Generator::Vertex(point) => point.dot(direction),
+            curved => curved.support(direction).dot(direction),
+        }
+    }
+
     /// `∂support/∂direction`: zero for a vertex, at a curve's ends, and where the direction is normal to a curve's plane.
     pub fn support_derivative(&self, direction: &Vector3<f64>) -> Matrix3<f64> {
         match self {

@@ -4,6 +4,8 @@
 //! All quantities are SI. The body frame has `x` along the width, `y` along the length, `z` along the height, and its
 //! origin is the centre of mass. Directions are unit vectors of the body frame.
 
+#![warn(missing_docs)]
+
 mod body;
 mod edge;
 mod error;

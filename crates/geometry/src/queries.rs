@@ -20,17 +20,14 @@ impl Body {
     /// The generator that reaches farthest along a direction, and its farthest point; the first of equals.
     #[inline]
     pub fn lowest(&self, direction: &Vector3<f64>) -> (u16, Vector3<f64>) {
-        let mut best = (0, Vector3::zeros());
+        let mut lowest = 0;
         let mut height = f64::NEG_INFINITY;
         for (g, generator) in self.generators.iter().enumerate() {
-            let point = generator.support(direction);
-            let reached = point.dot(direction);
-            if reached > height {
-                height = reached;
-                best = (g as u16, point);
-            }
+            let reached = generator.height(direction);
+            lowest = if reached > height { g } else { lowest };
+            height = reached.max(height);
         }
-        best
+        (lowest as u16, self.generators[lowest].support(direction))
     }
 
     #[inline]

@@ -50,7 +50,8 @@ impl Surface {
             Surface::HalfSpace(s) => s.normal.dot(point) - s.offset,
             Surface::Cone(s) => {
                 let (y, z) = (point.y - s.y0, point.z - s.z0);
-                s.draft.cos() * ((y * y + z * z).sqrt() - s.radius + (point.x - s.x0) * s.draft.tan())
+                let (sin, cos) = s.draft.sin_cos();
+                cos * ((y * y + z * z).sqrt() - s.radius) + sin * (point.x - s.x0)
             }
             Surface::Ellipsoid(s) => {
                 let scaled = point.component_div(&s.semi_axes);

@@ -114,8 +114,7 @@ fn spiked_ends_is_a_bar_and_four_triangles() {
 }
 
 /// Midpoint quadrature in `x` of sections given by area and central `y²`, `z²` about their own centre `(0, z)`.
-fn stacked(w: f64, section: impl Fn(f64) -> (f64, f64, f64, f64)) -> (f64, Vector3<f64>, Matrix3<f64>) {
-    let steps = 200_000;
+fn stacked(w: f64, steps: i32, section: impl Fn(f64) -> (f64, f64, f64, f64)) -> (f64, Vector3<f64>, Matrix3<f64>) {
     let (mut volume, mut first, mut second) = (0.0, Vector3::zeros(), Matrix3::zeros());
     for k in 0..steps {
         let x = w * ((f64::from(k) + 0.5) / f64::from(steps) - 0.5);
@@ -135,7 +134,7 @@ fn drafted_cuboid_against_quadrature() {
     let (l, w, h) = (800.0 * UM, 400.0 * UM, 100.0 * UM);
     let t = 4f64.to_radians().tan();
     let body = Body::cuboid(l, w, h, geometric(4.0)).unwrap();
-    let (volume, centre, inertia) = stacked(w, |x| {
+    let (volume, centre, inertia) = stacked(w, 200_000, |x| {
         let (l, h) = (l - 2.0 * x * t, h - 2.0 * x * t);
         (l * h, 0.0, l * l / 12.0, h * h / 12.0)
     });
@@ -152,7 +151,7 @@ fn drafted_spiked_against_quadrature() {
     let body = Body::spiked(l, w, h, b, o, geometric(4.0)).unwrap();
     let (rise, run) = (0.5 * (o - h), 0.5 * l);
     let slanted = rise.hypot(run);
-    let (volume, _, inertia) = stacked(w, |x| {
+    let (volume, _, inertia) = stacked(w, 200_000, |x| {
         let d = x * t;
         // The slanted line run z + rise y = run o/2 moves inwards by d.
         let tip = 0.5 * o - d * slanted / run;
@@ -171,20 +170,33 @@ fn drafted_spiked_against_quadrature() {
 }
 
 #[test]
-fn drafted_curved_against_its_outline() {
-    for degrees in [0.0, 3.0] {
-        let body = common::curved(geometric(degrees));
-        let (mut volume, mut first) = (0.0, Vector3::zeros());
-        for polygon in body.outline() {
-            for w in polygon[1..].windows(2) {
-                let part = polygon[0].dot(&w[0].cross(&w[1])) / 6.0;
-                volume += part;
-                first += part * (polygon[0] + w[0] + w[1]) / 4.0;
-            }
+fn drafted_curved_against_quadrature() {
+    let (ro, ri, alpha, w) = (1250.0 * UM, 1100.0 * UM, 25f64.to_radians(), 400.0 * UM);
+    let t = 3f64.to_radians().tan();
+    let body = Body::curved(ro, ri, alpha, w, geometric(3.0)).unwrap();
+    let (volume, centre, inertia) = stacked(w, 2000, |x| {
+        let d = x * t;
+        // The chord's corner is at the distance d from the undrafted end line and from the undrafted chord.
+        let corner = Vector2::new(d, ri + d * (1.0 - alpha.sin()) / alpha.cos());
+        let (inner, outer) = (corner.norm(), ro - d);
+        let steps = 500;
+        let (mut area, mut z, mut yy, mut zz) = (0.0, 0.0, 0.0, 0.0);
+        for k in 0..steps {
+            let r = inner + (outer - inner) * (f64::from(k) + 0.5) / f64::from(steps);
+            let beta = alpha - (d / r).asin();
+            let dr = (outer - inner) / f64::from(steps);
+            area += 2.0 * beta * r * dr;
+            z += 2.0 * beta.sin() * r * r * dr;
+            yy += (beta - beta.sin() * beta.cos()) * r.powi(3) * dr;
+            zz += (beta + beta.sin() * beta.cos()) * r.powi(3) * dr;
         }
-        assert!(near(volume, body.volume(), 1e-3), "{volume} {}", body.volume());
-        assert!((first / volume).norm() < 1e-4 * body.size());
-    }
+        (area, z / area, yy / area, zz / area - (z / area).powi(2))
+    });
+    assert!(near(body.volume(), volume, 1e-6));
+    same_inertia(&body, inertia, 1e-6);
+    let geometry::Generator::Arc(arc) = body.generators()[4] else { panic!() };
+    assert!(near(arc.centre.z, -centre.z, 1e-6));
+    assert!(near(arc.centre.x, -0.5 * w - centre.x, 1e-6));
 }
 
 #[test]

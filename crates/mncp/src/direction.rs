@@ -1,5 +1,5 @@
 use faer::linalg::matmul::matmul;
-use faer::{Accum, ColRef, Mat, Par};
+use faer::{Accum, Mat, Par};
 
 use crate::Settings;
 use crate::linear::Lu;
@@ -81,9 +81,8 @@ impl Directions {
     fn gradient(&mut self, at: &Linearisation) {
         self.image.fill(0.0);
         for (j, slope) in at.gradient.iter().enumerate() {
-            let column: ColRef<'_, f64> = at.matrix.col(j);
-            for (i, image) in self.image.iter_mut().enumerate() {
-                *image += column[i] * slope;
+            for (image, entry) in self.image.iter_mut().zip(at.matrix.col_as_slice(j)) {
+                *image += entry * slope;
             }
         }
         let alpha = dot(&at.gradient, &at.gradient) / dot(&self.image, &self.image);

@@ -36,7 +36,7 @@ pub fn gradient(a: f64, b: f64, smoothing: f64) -> Option<(f64, f64)> {
 /// ```
 ///
 /// With one vector `w` for all pairs, `da = w_i` and `db = ∇f_iᵀw`, the rows make up an element of the B-subdifferential
-/// of `Φ` (De Luca, Facchinei, Kanzow 1996, section 7). Here `w` is 1 on every pair at `(0, 0)` and 0 elsewhere.
+/// of `Φ` (De Luca, Facchinei, Kanzow 1996). Here `w` is 1 on every pair at `(0, 0)` and 0 elsewhere.
 pub fn gradient_at_origin(da: f64, db: f64) -> (f64, f64) {
     let s = da.hypot(db);
     (1.0 - da / s, 1.0 - db / s)

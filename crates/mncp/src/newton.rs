@@ -8,9 +8,9 @@ use crate::{Direction, Error, Iteration, Problem, Settings, Solution, Statistics
 
 /// Semismooth Newton method for problems of one size, with all storage that a solve needs.
 ///
-/// [`Solver::solve`] allocates nothing. The product kernels of faer hold a buffer for each thread, which [`Solver::new`]
-/// makes for its own; a solver of more than some twenty unknowns that is moved to another thread makes that thread's in
-/// its first solve there.
+/// [`Solver::solve`] allocates nothing. The product kernels that faer uses from 33 unknowns on hold a buffer for each
+/// thread, which [`Solver::new`] makes for its own: such a solver, moved to another thread, allocates once in its first
+/// solve there.
 pub struct Solver {
     settings: Settings,
     equalities: usize,
@@ -75,7 +75,7 @@ impl Solver {
         &self.settings
     }
 
-    /// Damped Newton steps on `Φ_ε(z) = 0` (De Luca, Facchinei, Kanzow 1996, algorithm 3.1). Where `ε > 0` it falls, to
+    /// Damped Newton steps on `Φ_ε(z) = 0` (De Luca, Facchinei, Kanzow 1996). Where `ε > 0` it falls, to
     /// zero in the end, as soon as `|Φ_ε| <= ε`: `φ_ε ≈ (ab - ε)/a` where `b << a`, so that a looser test would leave the
     /// path `ab = ε`.
     fn attempt(&mut self, problem: &impl Problem, mut smoothing: f64) -> Status {
@@ -103,6 +103,7 @@ impl Solver {
         if self.is_solved() { Status::Solved } else { Status::MaxIterations }
     }
 
+    /// Moves to the start and forgets the merits before it.
     fn begin(&mut self, problem: &impl Problem, start: &[f64], smoothing: f64) {
         self.current.z.copy_from_slice(start);
         self.current.evaluate(problem, smoothing);

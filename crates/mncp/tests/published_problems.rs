@@ -128,7 +128,7 @@ fn nash_cournot_with_five_firms() {
         let start = [start; 5];
         assert!(jacobian_error(&problem, &start) < 1e-6);
         let (_, z) = solve_tightly(&problem, &start);
-        assert!(distance(&z, &[36.937, 41.817, 43.706, 42.659, 39.179]) < 5e-3, "{z:?}");
+        assert!(distance(&z, &[36.9325, 41.8181, 43.7066, 42.6592, 39.1790]) < 1e-4, "{z:?}");
     }
 }
 
@@ -143,7 +143,7 @@ fn nash_cournot_with_ten_firms() {
     let published = [7.4415, 4.0979, 2.5906, 0.9354, 17.9490, 4.0979, 1.3048, 5.5902, 3.2220, 1.6772];
     for start in [1.0, 10.0] {
         let (_, z) = solve_tightly(&problem, &[start; 10]);
-        assert!(distance(&z, &published) < 5e-3, "{z:?}");
+        assert!(distance(&z, &published) < 3e-4, "{z:?}");
     }
 }
 

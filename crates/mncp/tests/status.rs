@@ -119,7 +119,14 @@ fn a_callback_that_turns_nan_ends_in_a_status() {
     let mut z = [3.0];
     let solution = solver(1, 0).solve(&problem, &mut z).unwrap();
     assert_eq!(solution.status, Status::NotFinite);
-    assert_eq!(z, [3.0]);
+    assert_eq!((solution.iterations, solution.residual), (1, z[0].exp() - 2.0));
+}
+
+#[test]
+fn a_solver_can_be_moved_to_another_thread() {
+    let mut solver = solver(0, 3);
+    let solve = move || solver.solve(&identity(3), &mut [0.0; 3]).unwrap().status;
+    assert_eq!(std::thread::spawn(solve).join().unwrap(), Status::Solved);
 }
 
 /// `0 = ln u` from 4: the first Newton step ends at `u < 0`.

@@ -5,23 +5,22 @@ use nalgebra::{Vector2, Vector3};
 use super::curved_section::{Section, Sector};
 use crate::body::Parts;
 use crate::generator::Corner;
-use crate::mass_properties::{MassProperties, gauss_legendre};
+use crate::mass_properties::MassProperties;
 use crate::normal_cone::{NormalCone, SurfaceSet};
-use crate::polyhedron::{anchors, area_and_centroid};
-use crate::{Arc, Body, Cone, Draft, Edge, Face, Generator, GeometryError, HalfSpace, Support, Surface};
+use crate::{Arc, Body, Cone, Draft, Edge, Generator, GeometryError, HalfSpace, Surface};
 
-const CONE: u16 = 0;
+pub(super) const CONE: u16 = 0;
 /// The end planes at negative and at positive `y`.
-const ENDS: [u16; 2] = [1, 2];
-const CHORD: u16 = 3;
+pub(super) const ENDS: [u16; 2] = [1, 2];
+pub(super) const CHORD: u16 = 3;
 /// The side planes at `-W/2` and `+W/2`.
-const SIDES: [u16; 2] = [4, 5];
+pub(super) const SIDES: [u16; 2] = [4, 5];
 /// Chord corners: `2 side + end`. Arcs: `4 + side`. Corner curves: `6 + end`.
-const fn inner(side: u16, end: u16) -> u16 {
+pub(super) const fn inner(side: u16, end: u16) -> u16 {
     2 * side + end
 }
-const ARC: u16 = 4;
-const CORNER: u16 = 6;
+pub(super) const ARC: u16 = 4;
+pub(super) const CORNER: u16 = 6;
 /// Below this `tan φ` a corner curve is straight to rounding, and the arcs' ends are enough.
 const STRAIGHT: f64 = 1e-6;
 const ARC_STEPS: usize = 32;
@@ -49,36 +48,38 @@ impl Body {
     }
 }
 
-struct Shape {
-    sector: Sector,
+/// The surfaces, generators and edges by the indices above.
+pub(super) struct Shape {
+    pub(super) sector: Sector,
     width: f64,
-    slope: f64,
+    pub(super) slope: f64,
     angle: f64,
-    sections: [Section; 2],
+    pub(super) sections: [Section; 2],
 }
 
-fn mirrored(point: Vector2<f64>, end: u16) -> Vector2<f64> {
+/// A profile point at positive `y` taken to one of the ends.
+pub(super) fn mirrored(point: Vector2<f64>, end: u16) -> Vector2<f64> {
     if end == 0 { Vector2::new(-point.x, point.y) } else { point }
 }
 
 impl Shape {
-    fn x(&self, side: u16) -> f64 {
+    pub(super) fn x(&self, side: u16) -> f64 {
         if side == 0 { -0.5 * self.width } else { 0.5 * self.width }
     }
 
-    fn placed(&self, side: u16, point: Vector2<f64>) -> Vector3<f64> {
+    pub(super) fn placed(&self, side: u16, point: Vector2<f64>) -> Vector3<f64> {
         Vector3::new(self.x(side), point.x, point.y)
     }
 
-    fn inner_corner(&self, side: u16, end: u16) -> Vector3<f64> {
+    pub(super) fn inner_corner(&self, side: u16, end: u16) -> Vector3<f64> {
         self.placed(side, mirrored(self.sections[usize::from(side)].inner_corner, end))
     }
 
-    fn outer_corner(&self, side: u16, end: u16) -> Vector3<f64> {
+    pub(super) fn outer_corner(&self, side: u16, end: u16) -> Vector3<f64> {
         self.placed(side, mirrored(self.sections[usize::from(side)].outer_corner, end))
     }
 
-    fn has_corner_curves(&self) -> bool {
+    pub(super) fn has_corner_curves(&self) -> bool {
         self.slope > STRAIGHT
     }
 
@@ -217,90 +218,6 @@ impl Shape {
             }
         }
         (edges, cones)
-    }
-
-    fn faces(&self) -> Vec<Face> {
-        let mut faces = Vec::new();
-        let corner = |end: u16| self.has_corner_curves().then_some(CORNER + end);
-        for (end, surface) in (0..).zip(ENDS) {
-            let mut generators = vec![inner(0, end), inner(1, end), ARC, ARC + 1];
-            generators.extend(corner(end));
-            let neighbours = vec![
-                (CHORD, Support::Line(inner(0, end), inner(1, end))),
-                (SIDES[0], Support::Line(inner(0, end), ARC)),
-                (SIDES[1], Support::Line(inner(1, end), ARC + 1)),
-                (CONE, corner(end).map_or(Support::Line(ARC, ARC + 1), Support::Point)),
-            ];
-            let (area, centroid) = self.end_area(end);
-            let outline = [0, 1].map(|side| [self.inner_corner(side, end), self.outer_corner(side, end)]);
-            faces.push(Face {
-                surface,
-                anchors: anchors(&outline.concat()),
-                generators,
-                neighbours,
-                area,
-                area_centroid: centroid,
-                line_length: 0.0,
-                line_centroid: centroid,
-            });
-        }
-
-        let bridge = [(0, 0), (0, 1), (1, 1), (1, 0)].map(|(side, end)| self.inner_corner(side, end));
-        let mut neighbours = Vec::new();
-        for k in 0..2 {
-            neighbours.push((ENDS[usize::from(k)], Support::Line(inner(0, k), inner(1, k))));
-            neighbours.push((SIDES[usize::from(k)], Support::Line(inner(k, 0), inner(k, 1))));
-        }
-        faces.push(Face {
-            surface: CHORD,
-            anchors: anchors(&bridge),
-            generators: vec![inner(0, 0), inner(0, 1), inner(1, 0), inner(1, 1)],
-            neighbours,
-            area: 0.0,
-            area_centroid: area_and_centroid(&bridge).1,
-            line_length: (bridge[3] - bridge[0]).norm() + (bridge[2] - bridge[1]).norm(),
-            line_centroid: bridge.iter().sum::<Vector3<f64>>() / 4.0,
-        });
-
-        for (side, surface) in (0..).zip(SIDES) {
-            let section = &self.sections[usize::from(side)];
-            let moments = section.moments();
-            let centroid = self.placed(side, Vector2::from(moments.first) / moments.area);
-            let mut generators = vec![inner(side, 0), inner(side, 1), ARC + side];
-            generators.extend([0, 1].into_iter().filter_map(corner));
-            let top = self.placed(side, Vector2::new(0.0, section.outer_radius));
-            faces.push(Face {
-                surface,
-                anchors: anchors(&[self.inner_corner(side, 0), self.inner_corner(side, 1), top]),
-                generators,
-                neighbours: vec![
-                    (CONE, Support::Point(ARC + side)),
-                    (ENDS[0], Support::Line(inner(side, 0), ARC + side)),
-                    (ENDS[1], Support::Line(inner(side, 1), ARC + side)),
-                    (CHORD, Support::Line(inner(side, 0), inner(side, 1))),
-                ],
-                area: moments.area,
-                area_centroid: centroid,
-                line_length: 0.0,
-                line_centroid: centroid,
-            });
-        }
-        faces
-    }
-
-    /// `A = ∫ (s_o - s_i) √(1 + tan²φ) dx` over the wall's end.
-    fn end_area(&self, end: u16) -> (f64, Vector3<f64>) {
-        let stretch = (1.0 + self.slope * self.slope).sqrt();
-        let mut area = 0.0;
-        let mut moment = Vector3::zeros();
-        for (x, weight) in gauss_legendre(self.x(0), self.x(1)) {
-            let section = self.sector.section((x - self.x(0)) * self.slope);
-            let (p, q) = (mirrored(section.inner_corner, end), mirrored(section.outer_corner, end));
-            let strip = weight * stretch * (q - p).norm();
-            area += strip;
-            moment += strip * Vector3::new(x, 0.5 * (p.x + q.x), 0.5 * (p.y + q.y));
-        }
-        (area, moment / area)
     }
 
     fn outline(&self) -> Vec<Vec<Vector3<f64>>> {

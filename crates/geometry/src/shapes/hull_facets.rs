@@ -13,6 +13,10 @@ const THINNEST: f64 = 1e-6;
 /// as `MERGE_STEPS` where the hull does not close.
 const MERGED: f64 = 1e-10;
 const MERGE_STEPS: i32 = 5;
+const ATTEMPTS: i32 = 12;
+const LEAST_JOSTLE: f64 = 1e-11;
+/// Indices of points are 16 bits wide.
+const MOST_POINTS: usize = u16::MAX as usize;
 
 /// The vertices of the convex hull and its faces, coplanar triangles merged.
 pub(super) fn hull_facets(points: &[Vector3<f64>]) -> Result<(Vec<Vector3<f64>>, Vec<Facet>), GeometryError> {
@@ -26,26 +30,44 @@ pub(super) fn hull_facets(points: &[Vector3<f64>]) -> Result<(Vec<Vector3<f64>>,
     if distinct.len() < 4 {
         return Err(GeometryError::TooFewPoints { distinct: distinct.len() });
     }
+    if distinct.len() > MOST_POINTS {
+        return Err(GeometryError::TooMany { what: "points", count: distinct.len(), limit: MOST_POINTS });
+    }
     let (round, thickness) = made_round(&distinct, extent)?;
 
-    let failure = |excess: f64| GeometryError::HullNotFound { points: distinct.len(), excess };
-    let triangles = parry_math::hull_triangles(&round).ok_or(failure(0.0))?;
     let mut worst = 0.0;
-    for step in 0..MERGE_STEPS {
-        let tolerance = (MERGED * 10f64.powi(step) * thickness).max(1e-15 * extent);
-        let Some(facets) = merged(&distinct, &triangles, tolerance) else { continue };
-        let excess = facets
-            .iter()
-            .flat_map(|f| distinct.iter().map(|p| f.half_space.normal.dot(p) - f.half_space.offset))
-            .fold(0.0, f64::max);
-        worst = excess;
-        if excess <= tolerance
-            && let Some(hull) = renumbered(&distinct, facets)
-        {
-            return Ok(hull);
+    for attempt in 0..ATTEMPTS {
+        let Some(triangles) = parry_math::hull_triangles(&jostled(&round, attempt)) else { continue };
+        for step in 0..MERGE_STEPS {
+            let tolerance = (MERGED * 10f64.powi(step) * thickness).max(1e-15 * extent);
+            let Some(facets) = merged(&distinct, &triangles, tolerance) else { continue };
+            worst = facets
+                .iter()
+                .flat_map(|f| distinct.iter().map(|p| f.half_space.normal.dot(p) - f.half_space.offset))
+                .fold(0.0, f64::max);
+            if worst <= tolerance
+                && let Some(hull) = renumbered(&distinct, facets)
+            {
+                return Ok(hull);
+            }
         }
     }
-    Err(failure(worst))
+    Err(GeometryError::HullNotFound { points: distinct.len(), excess: worst })
+}
+
+/// Many points in a plane or in a line can make parry lose a vertex. From the second attempt on the points move by a tiny
+/// pseudo-random amount, larger with each attempt, which tells parry how to triangulate and is not kept.
+fn jostled(points: &[Vector3<f64>], attempt: i32) -> Vec<Vector3<f64>> {
+    if attempt == 0 {
+        return points.to_vec();
+    }
+    let amplitude = LEAST_JOSTLE * 10f64.powf(0.5 * f64::from(attempt));
+    let spread = Vector3::new(0.819_172_513, 0.671_043_606, 0.549_700_478);
+    points
+        .iter()
+        .enumerate()
+        .map(|(i, p)| p + spread.map(|s| amplitude * ((s * (i as f64 + 7.3 * f64::from(attempt))).fract() - 0.5)))
+        .collect()
 }
 
 /// The points in their principal axes, each scaled to a unit extent, and their least extent: an affine map keeps the hull

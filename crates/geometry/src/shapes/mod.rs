@@ -1,5 +1,6 @@
 mod cuboid;
 mod curved;
+mod curved_faces;
 mod curved_section;
 mod ellipsoid;
 mod hull;
