@@ -20,6 +20,8 @@ const INSIDE: f64 = 1e-12;
 /// How negative, over `P`, `p_n` may be.
 const NO_PULL: f64 = 1e-13;
 const MAX_EXCHANGES: usize = 24;
+/// A friction coefficient that holds any load.
+const STICKS: f64 = 1e12;
 
 /// Where a step starts its search: the support and the unknowns of the step before.
 #[derive(Debug, Clone, Copy)]
@@ -102,7 +104,10 @@ fn try_all(step: &Step, warm: &Warm, iterations: &mut u32) -> Option<Found> {
 /// Solves for `support`. In the air, `-p_a n` acts at the lowest point after the step: the one that the body hung by
 /// before, if it stays the lowest, else the lowest that is consistent with itself.
 fn solve_support(step: &Step, support: Support, start: &Unknowns, before: &Support) -> Reduced {
-    if support != Support::None || !step.pulls_at_ecp || step.adhesion == 0.0 {
+    if support != Support::None {
+        return solve_contact(step, support, start);
+    }
+    if !step.pulls_at_ecp || step.adhesion == 0.0 {
         return solve(step, support, None, start);
     }
     let mut hang = match *before {
@@ -122,6 +127,23 @@ fn solve_support(step: &Step, support: Support, start: &Unknowns, before: &Suppo
         reduced = Reduced { iterations: reduced.iterations + again.iterations, ..again };
     }
     reduced
+}
+
+/// Solves for a contact from `start`; where that fails, from the contact that sticks whatever force it takes, and from
+/// the one without friction. With a large `e_r` the spin that a little friction stops is far from the one before the
+/// step, and Newton's method does not find it from there.
+fn solve_contact(step: &Step, support: Support, start: &Unknowns) -> Reduced {
+    let mut reduced = solve(step, support, None, start);
+    let mut iterations = reduced.iterations;
+    for friction_coefficient in [STICKS, 0.0] {
+        if reduced.converged {
+            break;
+        }
+        let predicted = solve(&Step { friction_coefficient, ..*step }, support, None, start);
+        reduced = solve(step, support, None, &predicted.at.unknowns);
+        iterations += predicted.iterations + reduced.iterations;
+    }
+    Reduced { iterations, ..reduced }
 }
 
 /// A start for a support that nothing is known about: the weight, spread evenly.
