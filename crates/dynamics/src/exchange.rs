@@ -11,6 +11,7 @@
 
 use crate::Vec3;
 use crate::contact::{ContactPoints, downward};
+use crate::predictor::{closest_contact, contact};
 use crate::reduced::{Evaluation, Reduced, Unknowns, solve};
 use crate::step::Step;
 use geometry::{Body, Support};
@@ -20,8 +21,6 @@ const INSIDE: f64 = 1e-12;
 /// How negative, over `P`, `p_n` may be.
 const NO_PULL: f64 = 1e-13;
 const MAX_EXCHANGES: usize = 24;
-/// A friction coefficient that holds any load.
-const STICKS: f64 = 1e12;
 
 /// Where a step starts its search: the support and the unknowns of the step before.
 #[derive(Debug, Clone, Copy)]
@@ -45,40 +44,62 @@ enum Verdict {
     Exchange(Support),
 }
 
-/// The step's solution by exchanging supports from `warm`, or by trying all of them.
+/// The step's solution by exchanging supports from `warm`, or by trying all of them; if there is none, the closest that
+/// an exchange leads to.
 pub fn search(step: &Step, warm: &Warm) -> Found {
     let mut iterations = 0;
+    let exact = exchange(step, warm, &mut iterations, |support, start| {
+        solve_support(step, support, start, &warm.support)
+    });
+    let found = match exact {
+        Ok(found) => found,
+        Err(_) => try_all(step, warm, &mut iterations).unwrap_or_else(|| closest(step, warm, &mut iterations)),
+    };
+    Found { iterations, ..found }
+}
+
+/// Where no support has a solution: the exchange among contacts that lack some of their friction.
+fn closest(step: &Step, warm: &Warm, iterations: &mut u32) -> Found {
+    let found = exchange(step, warm, iterations, |support, start| match support {
+        Support::None => solve_support(step, support, start, &warm.support),
+        _ => closest_contact(step, support, start),
+    });
+    let (Ok(found) | Err(found)) = found;
+    Found { right: false, ..found }
+}
+
+/// Exchanges supports from `warm` until one is right, each solved by `solve`.
+fn exchange(
+    step: &Step,
+    warm: &Warm,
+    iterations: &mut u32,
+    solve: impl Fn(Support, &Unknowns) -> Reduced,
+) -> Result<Found, Found> {
     let mut visited = [Support::None; MAX_EXCHANGES];
     let mut support = warm.support;
     let mut start = warm.unknowns;
     start.angular = step.state.angular;
-    let mut last = None;
-    for tried in 0..MAX_EXCHANGES {
-        if visited[..tried].contains(&support) {
-            break;
-        }
+    let mut tried = 0;
+    loop {
         visited[tried] = support;
-        let reduced = solve_support(step, support, &start, &warm.support);
-        iterations += reduced.iterations;
-        last = Some((support, reduced.at));
+        tried += 1;
+        let reduced = solve(support, &start);
+        *iterations += reduced.iterations;
+        let found = Found { support, at: reduced.at, iterations: *iterations, right: false };
         if !reduced.converged {
-            break;
+            return Err(found);
         }
         match judge(step, support, &reduced.at) {
-            Verdict::Right => return Found { support, at: reduced.at, iterations, right: true },
+            Verdict::Right => return Ok(Found { right: true, ..found }),
             Verdict::Exchange(next) => {
+                if tried == MAX_EXCHANGES || visited[..tried].contains(&next) {
+                    return Err(found);
+                }
                 start = fresh_start(step, next, &reduced.at);
                 support = next;
             }
         }
     }
-    try_all(step, warm, &mut iterations).unwrap_or_else(|| {
-        let (support, at) = last.unwrap_or_else(|| {
-            let reduced = solve_support(step, Support::None, &warm.unknowns, &warm.support);
-            (Support::None, reduced.at)
-        });
-        Found { support, at, iterations, right: false }
-    })
 }
 
 /// The first support of the body, in order of dimension, whose solution is right.
@@ -105,7 +126,7 @@ fn try_all(step: &Step, warm: &Warm, iterations: &mut u32) -> Option<Found> {
 /// before, if it stays the lowest, else the lowest that is consistent with itself.
 fn solve_support(step: &Step, support: Support, start: &Unknowns, before: &Support) -> Reduced {
     if support != Support::None {
-        return solve_contact(step, support, start);
+        return contact(step, support, start);
     }
     if !step.pulls_at_ecp || step.adhesion == 0.0 {
         return solve(step, support, None, start);
@@ -127,23 +148,6 @@ fn solve_support(step: &Step, support: Support, start: &Unknowns, before: &Suppo
         reduced = Reduced { iterations: reduced.iterations + again.iterations, ..again };
     }
     reduced
-}
-
-/// Solves for a contact from `start`; where that fails, from the contact that sticks whatever force it takes, and from
-/// the one without friction. With a large `e_r` the spin that a little friction stops is far from the one before the
-/// step, and Newton's method does not find it from there.
-fn solve_contact(step: &Step, support: Support, start: &Unknowns) -> Reduced {
-    let mut reduced = solve(step, support, None, start);
-    let mut iterations = reduced.iterations;
-    for friction_coefficient in [STICKS, 0.0] {
-        if reduced.converged {
-            break;
-        }
-        let predicted = solve(&Step { friction_coefficient, ..*step }, support, None, start);
-        reduced = solve(step, support, None, &predicted.at.unknowns);
-        iterations += predicted.iterations + reduced.iterations;
-    }
-    Reduced { iterations, ..reduced }
 }
 
 /// A start for a support that nothing is known about: the weight, spread evenly.

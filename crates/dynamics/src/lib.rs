@@ -17,6 +17,7 @@ pub mod general;
 pub mod magnetics;
 pub mod metrics;
 pub mod model;
+pub mod predictor;
 pub mod problem;
 pub mod recording;
 pub mod reduced;

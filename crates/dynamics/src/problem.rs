@@ -213,7 +213,7 @@ impl<'a> StepProblem<'a> {
         let apart = (at.arm - at.arm_substrate) / step.size + cone * z[ACTIVE];
         let opposed = cone + Vec3::z() * z[plane_slot];
 
-        let bound = step.friction_coefficient * step.bound_impulse(at.normal) / impulse;
+        let bound = step.friction.of(step.bound_impulse(at.normal)) / impulse;
         let slip = slip(&at) / self.velocity_unit();
         let (e, sigma) = (step.ellipsoid, z[sigma_slot]);
         for i in 0..3 {
@@ -288,7 +288,7 @@ impl<'a> StepProblem<'a> {
         put(9, 3, &(by_turn * turn));
 
         let e = step.ellipsoid;
-        let bound = step.friction_coefficient * step.bound_impulse(at.normal) / impulse;
+        let bound = step.friction.of(step.bound_impulse(at.normal)) / impulse;
         let angular = at.angular * self.angular_scale();
         let mut slip_by_arm = angular.cross_matrix();
         let mut slip_by_linear = Mat3::identity() - slip_by_arm * travel;
@@ -320,7 +320,7 @@ impl<'a> StepProblem<'a> {
             out[(3 + i, normal)] -= lever[i];
             out[(6 + i, ACTIVE)] += cone[i];
             out[(12 + i, sigma)] += z[12 + i];
-            out[(12 + i, normal)] += e[i] * slip[i] * step.friction_coefficient;
+            out[(12 + i, normal)] += e[i] * slip[i] * step.friction.slope();
             out[(sigma, 12 + i)] -= 2.0 * z[12 + i];
         }
         out[(2, normal)] -= 1.0;
@@ -336,7 +336,7 @@ impl<'a> StepProblem<'a> {
             put_value_row(&mut out, (self.slot(i), 6), &(-gradient), &arm, &turn, travel);
         }
         out[(plane, 11)] -= 1.0;
-        out[(sigma, normal)] += 2.0 * bound * step.friction_coefficient;
+        out[(sigma, normal)] += 2.0 * bound * step.friction.slope();
         let (surface, _) = self.greatest(&at);
         let gradient = self.gradient(surface, &at, &at.arm_substrate);
         put_value_row(&mut out, (normal, 9), &gradient, &(at.arm_substrate / step.size), &turn, travel);

@@ -245,7 +245,7 @@ fn assemble<const N: usize>(
         let mut slip_by_angular = w.cross_matrix() * arm_by_angular - arm.cross_matrix();
         slip_by_angular.set_row(2, &nalgebra::RowVector3::new(0.0, 0.0, 1.0));
 
-        let bound = step.friction_coefficient * step.bound_impulse(step.normal_impulse(normal));
+        let bound = step.friction.of(step.bound_impulse(step.normal_impulse(normal)));
         let rho = step.mass;
         let friction = friction_rows(&x.friction, &e.component_mul(&slip), bound, rho);
         slips = friction.slips;
@@ -262,7 +262,7 @@ fn assemble<const N: usize>(
         for (j, by) in arm_by_impulse[..count].iter().enumerate() {
             let moved = w.cross(by);
             let by_impulse =
-                scaled_slip * Vec3::new(moved.x, moved.y, 0.0) + friction.by_bound * step.friction_coefficient;
+                scaled_slip * Vec3::new(moved.x, moved.y, 0.0) + friction.by_bound * step.friction.slope();
             for i in 0..3 {
                 jacobian[(3 + count + i, 3 + j)] = by_impulse[i];
             }

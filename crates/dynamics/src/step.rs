@@ -5,6 +5,35 @@ use crate::rotation::matrix;
 use crate::{Adhesion, AdhesionActsAt, AdhesionEnters, Mat3, State, Trial, Vec3};
 use geometry::Body;
 
+/// The radius `b` of the ball that holds `E⁻¹p`.
+#[derive(Debug, Clone, Copy)]
+pub enum FrictionBound {
+    /// `b = μ p̄`.
+    Coulomb(f64),
+    /// `b` whatever the normal impulse is: Tresca's friction.
+    Held(f64),
+}
+
+impl FrictionBound {
+    /// `b` for `p̄`.
+    #[inline]
+    pub fn of(&self, impulse: f64) -> f64 {
+        match self {
+            Self::Coulomb(coefficient) => coefficient * impulse,
+            Self::Held(bound) => *bound,
+        }
+    }
+
+    /// `db/dp̄`.
+    #[inline]
+    pub fn slope(&self) -> f64 {
+        match self {
+            Self::Coulomb(coefficient) => *coefficient,
+            Self::Held(_) => 0.0,
+        }
+    }
+}
+
 /// Everything that the step from `u` to `u+1` depends on.
 #[derive(Debug, Clone, Copy)]
 pub struct Step<'a> {
@@ -25,8 +54,7 @@ pub struct Step<'a> {
     pub torque: TorqueLaw,
     /// `E = diag(e_t, e_o, e_r)`.
     pub ellipsoid: Vec3,
-    /// `μ`.
-    pub friction_coefficient: f64,
+    pub friction: FrictionBound,
     /// `p_a`.
     pub adhesion: f64,
     /// Whether `p_a` pulls at the ECP, so that `N = p_n - p_a`.
@@ -75,7 +103,7 @@ impl<'a> Step<'a> {
                 h,
             ),
             ellipsoid: Vec3::from(trial.substrate().friction_ellipsoid),
-            friction_coefficient: trial.substrate().friction_coefficient,
+            friction: FrictionBound::Coulomb(trial.substrate().friction_coefficient),
             adhesion: adhesion.impulse,
             pulls_at_ecp: normal && !at_centroid,
             raises_bound: !normal,

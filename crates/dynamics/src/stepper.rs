@@ -11,6 +11,10 @@ use crate::step::Step;
 use crate::{Adhesion, State, StepSolution, Trial, Vec3};
 use geometry::Support;
 
+/// `h|ω⁺|` beyond which a step does not count as converged: the Cayley map has turned the body by a right angle, and the
+/// gyroscopic term, taken at the start of the step as in the paper, has become unstable.
+const MOST_TURN: f64 = 2.0;
+
 /// Which solver a step goes to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SolverKind {
@@ -104,6 +108,7 @@ impl<'a> Stepper<'a> {
             SolverKind::General => self.general.solve(&step, &self.warm, &mut self.rows, &mut self.solution),
         }
         let h = self.trial.step();
+        self.solution.converged &= h * self.solution.angular.norm() <= MOST_TURN;
         self.state.linear = self.solution.linear;
         self.state.angular = self.solution.angular;
         self.state.position += self.solution.linear * h;
@@ -138,13 +143,9 @@ impl<'a> Stepper<'a> {
         sharpened.residual = self.rows.residual(step, &sharpened);
         sharpened.converged = found.right && sharpened.residual <= REQUIRED;
         sharpened.iterations += other.iterations;
-        for candidate in [other, sharpened] {
-            let better = candidate.residual < self.solution.residual;
-            if (candidate.converged && !self.solution.converged)
-                || (candidate.converged == self.solution.converged && better)
-            {
-                self.solution = candidate;
-            }
+        // What the search left is the closest contact; only a solution may replace it.
+        if let Some(solution) = [sharpened, other].into_iter().find(|candidate| candidate.converged) {
+            self.solution = solution;
         }
     }
 
