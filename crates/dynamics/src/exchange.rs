@@ -44,37 +44,37 @@ enum Verdict {
     Exchange(Support),
 }
 
-/// The step's solution by exchanging supports from `warm`, or by trying all of them; if there is none, the closest that
-/// an exchange leads to.
+/// What is asked of the contact on a support.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Wanted {
+    /// That it solves the reduced problem.
+    Solution,
+    /// Where nothing does: that it lacks only some of its friction.
+    Closest,
+}
+
+/// The step's solution by exchanging supports from `warm`, or by trying all of them; if there is none, the closest.
 pub fn search(step: &Step, warm: &Warm) -> Found {
     let mut iterations = 0;
-    let exact = exchange(step, warm, &mut iterations, |support, start| {
-        solve_support(step, support, start, &warm.support)
-    });
-    let found = match exact {
-        Ok(found) => found,
-        Err(_) => try_all(step, warm, &mut iterations).unwrap_or_else(|| closest(step, warm, &mut iterations)),
-    };
+    let mut last = None;
+    for wanted in [Wanted::Solution, Wanted::Closest] {
+        let found = match exchange(step, warm, wanted, &mut iterations) {
+            Ok(found) => Some(found),
+            Err(left) => {
+                last.get_or_insert(left);
+                try_all(step, warm, wanted, &mut iterations)
+            }
+        };
+        if let Some(found) = found {
+            return Found { right: wanted == Wanted::Solution, iterations, ..found };
+        }
+    }
+    let found = last.expect("an exchange that fails leaves where it ended");
     Found { iterations, ..found }
 }
 
-/// Where no support has a solution: the exchange among contacts that lack some of their friction.
-fn closest(step: &Step, warm: &Warm, iterations: &mut u32) -> Found {
-    let found = exchange(step, warm, iterations, |support, start| match support {
-        Support::None => solve_support(step, support, start, &warm.support),
-        _ => closest_contact(step, support, start),
-    });
-    let (Ok(found) | Err(found)) = found;
-    Found { right: false, ..found }
-}
-
-/// Exchanges supports from `warm` until one is right, each solved by `solve`.
-fn exchange(
-    step: &Step,
-    warm: &Warm,
-    iterations: &mut u32,
-    solve: impl Fn(Support, &Unknowns) -> Reduced,
-) -> Result<Found, Found> {
+/// Exchanges supports from `warm` until one is right, or says where it ended.
+fn exchange(step: &Step, warm: &Warm, wanted: Wanted, iterations: &mut u32) -> Result<Found, Found> {
     let mut visited = [Support::None; MAX_EXCHANGES];
     let mut support = warm.support;
     let mut start = warm.unknowns;
@@ -83,7 +83,7 @@ fn exchange(
     loop {
         visited[tried] = support;
         tried += 1;
-        let reduced = solve(support, &start);
+        let reduced = solve_support(step, support, &start, &warm.support, wanted);
         *iterations += reduced.iterations;
         let found = Found { support, at: reduced.at, iterations: *iterations, right: false };
         if !reduced.converged {
@@ -103,7 +103,7 @@ fn exchange(
 }
 
 /// The first support of the body, in order of dimension, whose solution is right.
-fn try_all(step: &Step, warm: &Warm, iterations: &mut u32) -> Option<Found> {
+fn try_all(step: &Step, warm: &Warm, wanted: Wanted, iterations: &mut u32) -> Option<Found> {
     let body = step.body;
     let points = (0..body.generators().len()).map(|g| Support::Point(g as u16));
     let lines = body.edges().iter().map(|edge| Support::Line(edge.generators.0, edge.generators.1));
@@ -112,7 +112,7 @@ fn try_all(step: &Step, warm: &Warm, iterations: &mut u32) -> Option<Found> {
         for angular in [step.state.angular, Vec3::zeros()] {
             let mut start = fresh(step, support);
             start.angular = angular;
-            let reduced = solve_support(step, support, &start, &warm.support);
+            let reduced = solve_support(step, support, &start, &warm.support, wanted);
             *iterations += reduced.iterations;
             if reduced.converged && matches!(judge(step, support, &reduced.at), Verdict::Right) {
                 return Some(Found { support, at: reduced.at, iterations: *iterations, right: true });
@@ -124,9 +124,12 @@ fn try_all(step: &Step, warm: &Warm, iterations: &mut u32) -> Option<Found> {
 
 /// Solves for `support`. In the air, `-p_a n` acts at the lowest point after the step: the one that the body hung by
 /// before, if it stays the lowest, else the lowest that is consistent with itself.
-fn solve_support(step: &Step, support: Support, start: &Unknowns, before: &Support) -> Reduced {
+fn solve_support(step: &Step, support: Support, start: &Unknowns, before: &Support, wanted: Wanted) -> Reduced {
     if support != Support::None {
-        return contact(step, support, start);
+        return match wanted {
+            Wanted::Solution => contact(step, support, start),
+            Wanted::Closest => closest_contact(step, support, start),
+        };
     }
     if !step.pulls_at_ecp || step.adhesion == 0.0 {
         return solve(step, support, None, start);

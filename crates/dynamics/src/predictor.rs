@@ -59,7 +59,8 @@ fn along_bounds(step: &Step, support: Support, largest: f64, start: &Unknowns) -
 
 /// The contact just below the first root of `F`, and the root itself where Newton's method finds it from there.
 fn closest_root(step: &Step, support: Support, largest: f64, start: &Unknowns) -> (Reduced, Option<Reduced>) {
-    let excess = |bound: f64, at: &Reduced| bound - step.friction.of(step.bound_impulse(step.normal_impulse(at.at.normal)));
+    let excess =
+        |bound: f64, at: &Reduced| bound - step.friction.of(step.bound_impulse(step.normal_impulse(at.at.normal)));
     let mut low = with_bound(step, support, 0.0, start);
     let mut low_bound = 0.0;
     let mut iterations = low.iterations;

@@ -261,8 +261,7 @@ fn assemble<const N: usize>(
         }
         for (j, by) in arm_by_impulse[..count].iter().enumerate() {
             let moved = w.cross(by);
-            let by_impulse =
-                scaled_slip * Vec3::new(moved.x, moved.y, 0.0) + friction.by_bound * step.friction.slope();
+            let by_impulse = scaled_slip * Vec3::new(moved.x, moved.y, 0.0) + friction.by_bound * step.friction.slope();
             for i in 0..3 {
                 jacobian[(3 + count + i, 3 + j)] = by_impulse[i];
             }
