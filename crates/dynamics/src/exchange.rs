@@ -11,7 +11,7 @@
 
 use crate::Vec3;
 use crate::contact::{ContactPoints, downward};
-use crate::predictor::{closest_contact, contact};
+use crate::predictor::{closest_contact, contact, other_starts};
 use crate::reduced::{Evaluation, Reduced, Unknowns, solve};
 use crate::step::Step;
 use geometry::{Body, Support};
@@ -102,21 +102,28 @@ fn exchange(step: &Step, warm: &Warm, wanted: Wanted, iterations: &mut u32) -> R
     }
 }
 
-/// The first support of the body, in order of dimension, whose solution is right.
+/// The first support of the body whose solution is right, each from several starts: a contact with friction may have more
+/// than one solution.
 fn try_all(step: &Step, warm: &Warm, wanted: Wanted, iterations: &mut u32) -> Option<Found> {
     let body = step.body;
     let points = (0..body.generators().len()).map(|g| Support::Point(g as u16));
     let lines = body.edges().iter().map(|edge| Support::Line(edge.generators.0, edge.generators.1));
     let faces = (0..body.faces().len()).map(|f| Support::Face(f as u16));
     for support in std::iter::once(Support::None).chain(faces).chain(lines).chain(points) {
-        for angular in [step.state.angular, Vec3::zeros()] {
-            let mut start = fresh(step, support);
-            start.angular = angular;
-            let reduced = solve_support(step, support, &start, &warm.support, wanted);
+        let moving = fresh(step, support);
+        let still = Unknowns { angular: Vec3::zeros(), ..moving };
+        let mut attempt = |start: &Unknowns| {
+            let reduced = solve_support(step, support, start, &warm.support, wanted);
             *iterations += reduced.iterations;
-            if reduced.converged && matches!(judge(step, support, &reduced.at), Verdict::Right) {
-                return Some(Found { support, at: reduced.at, iterations: *iterations, right: true });
-            }
+            let right = reduced.converged && matches!(judge(step, support, &reduced.at), Verdict::Right);
+            right.then_some(Found { support, at: reduced.at, iterations: *iterations, right })
+        };
+        let found = attempt(&moving).or_else(|| attempt(&still)).or_else(|| match support {
+            Support::None => None,
+            _ => other_starts(step, support, &moving).iter().find_map(attempt),
+        });
+        if found.is_some() {
+            return found;
         }
     }
     None

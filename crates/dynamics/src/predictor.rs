@@ -30,7 +30,7 @@ const SHARPEN_EVERY: u32 = 10;
 /// The contact on `support`, or the closest to one that there is, with some of its friction missing.
 pub fn closest_contact(step: &Step, support: Support, start: &Unknowns) -> Reduced {
     let found = contact(step, support, start);
-    if found.converged { found } else { closest_root(step, support, LARGEST * step.load_scale(), start).0 }
+    if found.converged { found } else { root(step, support, Ladder::Up, start).0 }
 }
 
 /// Solves the contact on `support` from `start`, from the one that sticks whatever force it takes, or along growing bounds.
@@ -43,8 +43,17 @@ pub fn contact(step: &Step, support: Support, start: &Unknowns) -> Reduced {
     let stuck = with_bound(step, support, largest, start);
     let from_stuck = solve(step, support, None, &stuck.at.unknowns);
     let iterations = direct.iterations + stuck.iterations + from_stuck.iterations;
-    let found = if from_stuck.converged { from_stuck } else { along_bounds(step, support, largest, start) };
+    let found = if from_stuck.converged { from_stuck } else { along_bounds(step, support, start) };
     Reduced { iterations: iterations + found.iterations, ..found }
+}
+
+/// Starts from which Newton's method may find other solutions on `support`: near the root of `F` with the least friction,
+/// and near the one with the most.
+pub fn other_starts(step: &Step, support: Support, start: &Unknowns) -> [Unknowns; 2] {
+    [Ladder::Up, Ladder::Down].map(|ladder| {
+        let (near, sharp) = root(step, support, ladder, start);
+        sharp.unwrap_or(near).at.unknowns
+    })
 }
 
 fn with_bound(step: &Step, support: Support, bound: f64, start: &Unknowns) -> Reduced {
@@ -52,47 +61,58 @@ fn with_bound(step: &Step, support: Support, bound: f64, start: &Unknowns) -> Re
 }
 
 /// The first root of `F` as `b` grows, sharpened.
-fn along_bounds(step: &Step, support: Support, largest: f64, start: &Unknowns) -> Reduced {
-    let (low, sharp) = closest_root(step, support, largest, start);
-    sharp.unwrap_or(Reduced { converged: false, ..low })
+fn along_bounds(step: &Step, support: Support, start: &Unknowns) -> Reduced {
+    let (near, sharp) = root(step, support, Ladder::Up, start);
+    sharp.unwrap_or(Reduced { converged: false, ..near })
 }
 
-/// The contact just below the first root of `F`, and the root itself where Newton's method finds it from there.
-fn closest_root(step: &Step, support: Support, largest: f64, start: &Unknowns) -> (Reduced, Option<Reduced>) {
+/// The way that the bounds are gone through: doubled from nothing, or halved from the largest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Ladder {
+    Up,
+    Down,
+}
+
+/// The contact just before the first root of `F` on the way, and the root itself where Newton's method finds it from
+/// there.
+fn root(step: &Step, support: Support, ladder: Ladder, start: &Unknowns) -> (Reduced, Option<Reduced>) {
+    let largest = LARGEST * step.load_scale();
+    let up = ladder == Ladder::Up;
     let excess =
         |bound: f64, at: &Reduced| bound - step.friction.of(step.bound_impulse(step.normal_impulse(at.at.normal)));
-    let mut low = with_bound(step, support, 0.0, start);
-    let mut low_bound = 0.0;
-    let mut iterations = low.iterations;
-    for doubling in (0..=DOUBLINGS).rev() {
-        let mut high_bound = largest * 0.5f64.powi(doubling);
-        let high = with_bound(step, support, high_bound, &low.at.unknowns);
-        iterations += high.iterations;
-        if !high.converged {
+    let mut near_bound = if up { 0.0 } else { largest };
+    let mut near = with_bound(step, support, near_bound, start);
+    let mut iterations = near.iterations;
+    for rung in 0..=DOUBLINGS {
+        let halvings = if up { DOUBLINGS - rung } else { rung };
+        let mut far_bound = largest * 0.5f64.powi(halvings);
+        let far = with_bound(step, support, far_bound, &near.at.unknowns);
+        iterations += far.iterations;
+        if !far.converged {
             break;
         }
-        if excess(high_bound, &high) < 0.0 {
-            (low, low_bound) = (high, high_bound);
+        if (excess(far_bound, &far) < 0.0) == up {
+            (near, near_bound) = (far, far_bound);
             continue;
         }
         for halving in 1..=HALVINGS {
-            let bound = 0.5 * (low_bound + high_bound);
-            let middle = with_bound(step, support, bound, &low.at.unknowns);
+            let bound = 0.5 * (near_bound + far_bound);
+            let middle = with_bound(step, support, bound, &near.at.unknowns);
             iterations += middle.iterations;
-            if middle.converged && excess(bound, &middle) < 0.0 {
-                (low, low_bound) = (middle, bound);
+            if middle.converged && (excess(bound, &middle) < 0.0) == up {
+                (near, near_bound) = (middle, bound);
             } else {
-                high_bound = bound;
+                far_bound = bound;
             }
             if halving % SHARPEN_EVERY == 0 {
-                let sharp = solve(step, support, None, &low.at.unknowns);
+                let sharp = solve(step, support, None, &near.at.unknowns);
                 iterations += sharp.iterations;
                 if sharp.converged {
-                    return (low, Some(Reduced { iterations, ..sharp }));
+                    return (near, Some(Reduced { iterations, ..sharp }));
                 }
             }
         }
         break;
     }
-    (Reduced { iterations, ..low }, None)
+    (Reduced { iterations, ..near }, None)
 }
