@@ -14,13 +14,15 @@ use crate::contact::{ContactPoints, downward};
 use crate::predictor::{closest_contact, contact, other_starts};
 use crate::reduced::{Evaluation, Reduced, Unknowns, solve};
 use crate::step::Step;
-use geometry::{Body, Support};
+use geometry::{Body, Generator, Support};
 
 /// How far, over `ℓ`, a point may be below the plane or outside its support: rounding, not physics.
 const INSIDE: f64 = 1e-12;
 /// How negative, over `P`, `p_n` may be.
 const NO_PULL: f64 = 1e-13;
 const MAX_EXCHANGES: usize = 24;
+/// The tilt (rad) from which a body is taken onto a curved rim.
+const RIM_TILT: f64 = 1e-5;
 
 /// Where a step starts its search: the support and the unknowns of the step before.
 #[derive(Debug, Clone, Copy)]
@@ -96,6 +98,9 @@ fn exchange(step: &Step, warm: &Warm, wanted: Wanted, iterations: &mut u32) -> R
                     return Err(found);
                 }
                 start = fresh_start(step, next, &reduced.at);
+                if let (Support::Face(_), Support::Point(generator)) = (support, next) {
+                    start.angular += tilt_onto(step, generator, &reduced.at);
+                }
                 support = next;
             }
         }
@@ -188,6 +193,20 @@ fn fresh_start(step: &Step, next: Support, at: &Evaluation) -> Unknowns {
         start.friction = at.unknowns.friction;
     }
     start
+}
+
+/// A small spin onto the rim of a face, where the rim is curved: its lowest point follows the direction of the tilt, which a
+/// flat face does not have. With `d` the horizontal normal of the surface that the ECP has left, `n × d` lowers that side.
+fn tilt_onto(step: &Step, rim: u16, at: &Evaluation) -> Vec3 {
+    if matches!(step.body.generators()[rim as usize], Generator::Vertex(_)) {
+        return Vec3::zeros();
+    }
+    let point = at.rotation.transpose() * at.arm;
+    let (left, _) = step.body.max_value(&point);
+    let mut outward = at.rotation * step.body.surfaces()[left].gradient(&point);
+    outward.z = 0.0;
+    let length = outward.norm();
+    if length > 0.0 { Vec3::z().cross(&outward) * (RIM_TILT / (length * step.h)) } else { Vec3::zeros() }
 }
 
 /// Holds `support`'s solution against the conditions, and names the exchange where one fails.
