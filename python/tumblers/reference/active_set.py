@@ -1,14 +1,15 @@
 """The smooth square system of a step on a fixed active set, solved by MINPACK's hybrid method.
 
 An active set is a cell of the body and a regime. With the multipliers in the form without `k` (`λ`, docs/model.md), the
-unknowns are `V⁺`, `r = a1 - q⁺`, the `λ` of the cell's surfaces, and in contact `E⁻¹p`, `p_n` and, slipping, `σ`::
+unknowns are `V⁺`, `r = a1 - q⁺`, the `λ` of the cell's surfaces, and in contact `E⁻¹p` (slipping: its direction `d`,
+`E⁻¹p = μ p̄ d`, which stays well scaled however small `p_n` is), `p_n` and, slipping, `σ`::
 
     momentum rows                                                    6
     r = R⁺ s                                    (a vertex s)         3
     f_i(a1) = 0,  Σ λ_i ∇f_i(a1) = -n           (any other cell)     |A| + 3
     z(a1) = 0                                   (contact)            1
     E u = 0                                     (stick)              3
-    μ p̄ E u + E⁻¹p σ = 0,  |E⁻¹p|² = (μ p̄)²     (slip)               4
+    E u + d σ = 0,  |d|² = 1                    (slip)               4
 
 Airborne `p = 0` and `p_n = 0`. The units are `P0`, the impulse of all loads, `U0 = P0/m`, the body's radius and `h`.
 """
@@ -18,7 +19,7 @@ from __future__ import annotations
 from typing import Literal
 
 import numpy as np
-from scipy.optimize import nnls, root  # type: ignore[import-untyped]
+from scipy.optimize import nnls, root  # type: ignore[import-untyped, unused-ignore]
 
 from .array import Array
 from .cell import Cell
@@ -43,6 +44,8 @@ class ActiveSet:
         self.impulse = load_impulse(problem)
         self.speed = self.impulse / problem.mass
         radius = problem.body.radius
+        # Of σ and E u; e_r may be far larger than the body, and a spin then counts as a fast slip.
+        self.slip_speed = self.speed
         self.unit = np.concatenate([np.full(3, self.speed), np.full(3, self.speed / radius), np.full(3, radius)])
 
     def pack(self, guess: Guess) -> Array:
@@ -54,11 +57,14 @@ class ActiveSet:
             parts.append(np.linalg.lstsq(gradients[self.surfaces].T, -NORMAL)[0])
         if self.regime == "stick":
             scaled = guess.p / (problem.e * self.impulse)
-            parts += [scaled, np.array([max(guess.p_n / self.impulse, 1e-3)])]
+            parts += [scaled, np.array([guess.p_n / self.impulse])]
         elif self.regime == "slip":
             p, p_n, sigma = slipping_start(problem, guess)
-            scaled = p / (problem.e * self.impulse)
-            parts += [scaled, np.array([max(p_n / self.impulse, 1e-3), max(sigma / self.speed, 1e-6)])]
+            scaled = p / problem.e
+            size = float(np.linalg.norm(scaled))
+            direction = scaled / size if size > 0.0 else np.array([1.0, 0.0, 0.0])
+            self.slip_speed = max(sigma, 1e-3 * self.speed)
+            parts += [direction, np.array([p_n / self.impulse, max(sigma / self.slip_speed, 1e-3)])]
         return np.concatenate(parts)
 
     def unpack(self, x: Array) -> tuple[Array, Array, Array, Array, float, float]:
@@ -66,9 +72,11 @@ class ActiveSet:
         si, n = x[:9] * self.unit, self.multipliers
         if self.regime == "airborne":
             return si[:6], si[6:], x[9 : 9 + n], np.zeros(3), 0.0, 0.0
-        p = x[9 + n : 12 + n] * self.problem.e * self.impulse
-        sigma = float(x[13 + n]) * self.speed if self.regime == "slip" else 0.0
-        return si[:6], si[6:], x[9 : 9 + n], p, float(x[12 + n]) * self.impulse, sigma
+        p_n, p = float(x[12 + n]) * self.impulse, x[9 + n : 12 + n] * self.problem.e
+        if self.regime == "stick":
+            return si[:6], si[6:], x[9 : 9 + n], p * self.impulse, p_n, 0.0
+        bound = self.problem.mu * (p_n if self.problem.trial.adhesion_enters == "normal" else p_n + self.problem.p_a)
+        return si[:6], si[6:], x[9 : 9 + n], p * bound, p_n, float(x[13 + n]) * self.slip_speed
 
     def rows(self, x: Array) -> Array:
         """The square system's scaled rows."""
@@ -85,29 +93,34 @@ class ActiveSet:
             local = rotation.T @ r
             on = [problem.body.surfaces[i] for i in self.surfaces]
             parts.append(np.array([surface.value(local) for surface in on]) / radius)
-            direction = multipliers @ np.array([surface.gradient(local) for surface in on])
-            parts.append(rotation @ direction + NORMAL)
+            push = multipliers @ np.array([surface.gradient(local) for surface in on])
+            parts.append(rotation @ push + NORMAL)
         if self.regime == "airborne":
             return np.concatenate(parts)
         parts.append(np.array([(position[2] + r[2]) / moved]))
-        slipping = problem.e * slip(V, r) / self.speed
+        slipping = problem.e * slip(V, r)
         if self.regime == "stick":
-            parts.append(slipping)
+            parts.append(slipping / self.speed)
         else:
             n = self.multipliers
-            bound = problem.mu * problem.bound(p_n) / self.impulse
-            scaled = x[9 + n : 12 + n]
-            parts.append(bound * slipping + scaled * x[13 + n])
-            parts.append(np.array([float(scaled @ scaled) - bound**2]))
+            direction = x[9 + n : 12 + n]
+            parts.append(slipping / self.slip_speed + direction * x[13 + n])
+            parts.append(np.array([float(direction @ direction) - 1.0]))
         return np.concatenate(parts)
 
-    def solve(self, guess: Guess) -> Unknowns | None:
-        """Solution near `guess`, not yet checked for its inequalities; None where the iteration fails."""
+    def solve(self, guess: Guess, thorough: bool = False) -> Unknowns | None:
+        """Solution near `guess`, not yet checked for its inequalities; None where the iteration fails.
+
+        `thorough` adds Levenberg and Marquardt's method where the hybrid one fails: slower, and seldom stuck.
+        """
         start = self.pack(guess)
         with np.errstate(all="ignore"):
             try:
                 found = root(self.rows, start, method="hybr", options={"xtol": 1e-13, "maxfev": 60 * len(start)})
                 x = self._newton(np.asarray(found.x))
+                if x is None and thorough:
+                    found = root(self.rows, start, method="lm", options={"xtol": 1e-13, "ftol": 1e-13, "maxiter": 600})
+                    x = self._newton(np.asarray(found.x))
             except (ValueError, np.linalg.LinAlgError):
                 return None
         if x is None:

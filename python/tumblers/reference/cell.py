@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import combinations
+from itertools import combinations, pairwise
 from typing import Literal
 
 import numpy as np
@@ -74,7 +74,7 @@ def polygon_area(points: Array, normal: Array) -> tuple[float, Array]:
     """Area [m²] and centroid, shape (3,) [m], of a planar polygon `points`, shape (k, 3), in order."""
     fan = [
         (0.5 * float(normal @ cross(b - points[0], c - points[0])), (points[0] + b + c) / 3.0)
-        for b, c in zip(points[1:-1], points[2:], strict=True)
+        for b, c in pairwise(points[1:])
     ]
     area = sum(part for part, _ in fan)
     centroid = sum((part * middle for part, middle in fan), np.zeros(3)) / area

@@ -51,7 +51,7 @@ class StaticField:
 
     flux_density: Array
 
-    def at(self, time: float) -> Array:
+    def at(self, time: float) -> Array:  # noqa: ARG002, RUF100
         """`B(t)` [T], shape (3,), substrate frame, at `time` [s]."""
         return self.flux_density
 

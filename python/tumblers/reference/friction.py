@@ -13,7 +13,7 @@ from __future__ import annotations
 from typing import Literal
 
 import numpy as np
-from scipy.optimize import brentq  # type: ignore[import-untyped]
+from scipy.optimize import brentq  # type: ignore[import-untyped, unused-ignore]
 
 from .array import Array
 from .rotation import cross

@@ -11,11 +11,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.optimize import least_squares  # type: ignore[import-untyped]
-from scipy.special import logsumexp  # type: ignore[import-untyped]
+from scipy.optimize import least_squares  # type: ignore[import-untyped, unused-ignore]
+from scipy.special import logsumexp  # type: ignore[import-untyped, unused-ignore]
 
-from .active_set import Guess, complete, load_impulse
+from .active_set import complete
 from .array import Array
+from .linearised import Guess, load_impulse
 from .problem import StepProblem, Unknowns
 
 _SMOOTHING = (1e-1, 1e-2, 1e-3, 1e-4, 1e-6)

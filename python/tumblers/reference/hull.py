@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import ConvexHull  # type: ignore[import-untyped]
+from scipy.spatial import ConvexHull  # type: ignore[import-untyped, unused-ignore]
 
 from .array import Array
 from .surface import HalfSpace

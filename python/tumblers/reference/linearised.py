@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import brentq  # type: ignore[import-untyped, unused-ignore]
 
 from .array import Array
 from .friction import maximum_dissipation, slip
@@ -68,17 +69,29 @@ def friction_impulse(problem: StepProblem, inverse: Array, V: Array, r: Array, p
 def slipping_start(problem: StepProblem, guess: Guess) -> tuple[Array, float, float]:
     """`p`, `p_n`, `σ` of a point contact that moves with the guess's velocity along the normal.
 
-    Friction for the last normal impulse and normal impulse for the last friction, in turns and damped.
+    The root in `p_n` of the normal velocity's change, friction being a function of `p_n`.
     """
-    inverse = np.linalg.inv(mass_matrix(problem, guess.V))
+    inverse = np.asarray(np.linalg.inv(mass_matrix(problem, guess.V)), dtype=np.float64)
     tangential = lift(guess.r)
     normal = np.concatenate([NORMAL, cross(guess.r, NORMAL)])
     compliance = float(normal @ inverse @ normal)
     coupling = np.asarray(tangential.T @ inverse @ normal)
     without = np.asarray(guess.V - inverse @ tangential @ guess.p)
-    p_n, p, sigma = guess.p_n, guess.p, 0.0
-    for _ in range(20):
+
+    def friction(p_n: float) -> tuple[Array, float]:
         moved = np.asarray(without + inverse @ normal * (p_n - guess.p_n))
-        p, sigma = friction_impulse(problem, inverse, moved, guess.r, max(p_n, 0.0))
-        p_n = 0.5 * p_n + 0.5 * max(guess.p_n - float(coupling @ (p - guess.p)) / compliance, 0.0)
+        return friction_impulse(problem, inverse, moved, guess.r, p_n)
+
+    def change(p_n: float) -> float:
+        return (p_n - guess.p_n) * compliance + float(coupling @ (friction(p_n)[0] - guess.p))
+
+    high = max(guess.p_n, 1e-6 * load_impulse(problem))
+    for _ in range(12):
+        if change(high) > 0.0:
+            break
+        high *= 4.0
+    p_n = high
+    if change(0.0) < 0.0 < change(high):
+        p_n = float(brentq(change, 0.0, high, xtol=1e-12 * high))
+    p, sigma = friction(p_n)
     return p, p_n, sigma

@@ -13,7 +13,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import nnls, root  # type: ignore[import-untyped]
+from scipy.optimize import nnls, root  # type: ignore[import-untyped, unused-ignore]
 
 from .array import Array
 from .linearised import Guess, friction_impulse, lift, load_impulse, mass_matrix
@@ -30,8 +30,12 @@ class Prediction:
     guess: Guess
 
 
-def free_motion(problem: StepProblem, start: Array | None = None) -> Array:
-    """`V⁺`, shape (6,), with neither contact nor adhesion at the closest point."""
+def free_motion(problem: StepProblem) -> Array:
+    """`V⁺`, shape (6,), with neither contact nor adhesion at the closest point.
+
+    A torque at the end of the step that turns the body by more than a radian defeats a single start, and has several
+    solutions; the first found from the state, from rest and from growing parts of the first torque's kick counts.
+    """
     linear = problem.linear / problem.mass
     unit = load_impulse(problem) / (problem.mass * problem.body.radius)
     scale = problem.mass * problem.body.radius**2 * unit
@@ -40,13 +44,21 @@ def free_motion(problem: StepProblem, start: Array | None = None) -> Array:
         omega = x * unit
         return np.asarray((problem.inertia @ omega - problem.angular - problem.h * problem.torque(omega)) / scale)
 
-    first = problem.state.angular_velocity if start is None else start[3:]
-    found = root(rows, first / unit, options={"xtol": 1e-14})
-    x = np.asarray(found.x)
-    for _ in range(2):
-        jacobian = np.stack([(rows(x + d) - rows(x - d)) / 2e-6 for d in 1e-6 * np.eye(3)], axis=1)
-        x = x - np.linalg.solve(jacobian, rows(x))
-    return np.concatenate([linear, x * unit])
+    first = problem.state.angular_velocity / unit
+    kick = np.linalg.solve(problem.inertia, problem.h * problem.torque(problem.state.angular_velocity)) / unit
+    best, best_size = first, float("inf")
+    for start in [first, 0.0 * first] + [first + part * kick for part in (0.1, 0.25, 0.5, 1.0, -0.25, -1.0, 3.0)]:
+        x = np.asarray(root(rows, start, method="hybr", options={"xtol": 1e-14}).x)
+        for _ in range(2):
+            jacobian = np.stack([(rows(x + d) - rows(x - d)) / 2e-6 for d in 1e-6 * np.eye(3)], axis=1)
+            if abs(float(np.linalg.det(jacobian))) > 0.0:
+                x = x - np.linalg.solve(jacobian, rows(x))
+        size = float(np.abs(rows(x)).max())
+        if size < best_size:
+            best, best_size = x, size
+        if size < 1e-12:
+            break
+    return np.concatenate([linear, best * unit])
 
 
 def predictions(problem: StepProblem, free: Array, passes: int = 8) -> list[Prediction]:
@@ -59,7 +71,7 @@ def predictions(problem: StepProblem, free: Array, passes: int = 8) -> list[Pred
         position, rotation = problem.pose(V)
         anchors = list(body.anchors(rotation))
         y = np.array([rotation @ anchor.point for anchor in anchors])
-        inverse = np.linalg.inv(mass_matrix(problem, V))
+        inverse = np.asarray(np.linalg.inv(mass_matrix(problem, V)), dtype=np.float64)
         factor = np.linalg.cholesky(0.5 * (inverse + inverse.T))
         r = y[int(np.argmin(y[:, 2]))] if normal <= 0.0 else ecp
         adhesion = problem.p_a if problem.adhesion_at_ecp else 0.0

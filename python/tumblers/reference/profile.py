@@ -1,7 +1,7 @@
 """Convex profiles with draft (docs/model.md, "Body").
 
-Equations: face `i` at body `x` is the line `n_i · (y, z) = c_i - (x + W/2) tan φ_i`, hence the half-space of unit normal
-`(sin φ_i, cos φ_i n_i)`.
+Equations: face `i` at body `x` is the line `n_i · (y, z) = c_i - (x + W/2) tan φ_i`, hence the half-space of unit
+normal `(sin φ_i, cos φ_i n_i)`.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """The robots' shapes (docs/model.md, "Body").
 
-The draft `geometric` insets every face of the profile by `(x + W/2) tan φ`; `as_released` takes `n tan φ` for the slanted
-faces of the spiked robots, `n` twice the slanted edge's length in millimetres. The origin is the real body's centre of
-mass.
+The draft `geometric` insets every face of the profile by `(x + W/2) tan φ`; `as_released` takes `n tan φ` for the
+slanted faces of the spiked robots, `n` twice the slanted edge's length in millimetres. The origin is the real body's
+centre of mass.
 """
 
 from __future__ import annotations

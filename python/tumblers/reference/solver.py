@@ -3,8 +3,9 @@
 1. Free motion: airborne if the body's lowest point ends above the plane.
 2. The predictor's supports, sticking and slipping. What a solution violates names the next candidate: friction outside
    its ellipsoid, slip against itself, another point below the plane, or an ECP outside the support.
-3. Every other cell by the height of its highest point at the predicted pose, sticking and slipping.
-4. The homotopy on the full problem from several starts, each result polished on the active set that it shows.
+3. The same with a friction coefficient, or a magnetic torque, that rises from nearly 0 to its own.
+4. Every other cell by the height of its highest point at the predicted pose, sticking and slipping.
+5. The homotopy on the full problem from several starts, each result polished on the active set that it shows.
 
 A candidate counts if the scaled natural residual of all unknowns of the full problem is at most 1e-10.
 """
@@ -12,15 +13,19 @@ A candidate counts if the scaled natural residual of all unknowns of the full pr
 from __future__ import annotations
 
 from collections.abc import Callable
+from copy import copy
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import Literal
 
 import numpy as np
 
-from .active_set import ActiveSet, Guess, Regime, complete
+from .active_set import ActiveSet, Regime, complete
 from .array import Array
 from .body import Anchor
 from .cell import Cell
 from .homotopy import approximations
+from .linearised import Guess
 from .predictor import Prediction, free_motion, predictions
 from .problem import NORMAL, StepProblem, Unknowns
 from .residual import residual
@@ -28,6 +33,7 @@ from .rotation import aligning, cayley_vector, cross
 
 TOLERANCE = 1e-10
 _TIE = 1e-12
+_PARTS = (0.003, 0.01, 0.03, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,8 +70,10 @@ class Search:
         predicted = predictions(self.problem, free)
         stages: tuple[Callable[[], bool], ...] = (
             lambda: self.airborne(free),
-            lambda: self.follow(self.likely(predicted)),
+            lambda: self.follow(self.likely(predicted), thorough=True),
             lambda: self.contact_adhesion_airborne(free),
+            lambda: self.rising("friction"),
+            lambda: self.rising("torque"),
             lambda: self.exhaust(predicted[0].guess),
             lambda: self.exhaust(self.still()),
             lambda: self.smoothed([p.guess for p in predicted[:2]] + [self.still(), self.lifted(free)]),
@@ -120,6 +128,39 @@ class Search:
                 return True
         return False
 
+    def rising(self, what: Literal["friction", "torque"]) -> bool:
+        """The problem with a friction or a torque that rises to its own, each solution starting the next."""
+        guess: Guess | None = None
+        for part in _PARTS:
+            problem = copy(self.problem)
+            if what == "friction":
+                problem.mu = part * self.problem.mu
+            else:
+                problem.torque = partial(_part_of, part, self.problem.torque)
+            search = Search(problem)
+            free = free_motion(problem)
+            solved = part < 1.0 and search.airborne(free)
+            solved = solved or (guess is not None and search.touching(guess))
+            solved = solved or search.follow(search.likely(predictions(problem, free)), thorough=True)
+            self.count += search.count
+            z = search.best
+            if not solved or z is None:
+                continue
+            guess = Guess(z.V, z.a1 - problem.pose(z.V)[0], z.p, z.p_n)
+            if part == 1.0:
+                return self.offer(z)
+        return False
+
+    def touching(self, guess: Guess) -> bool:
+        """Solve from `guess` on the support that it touches with."""
+        _, rotation = self.problem.pose(guess.V)
+        values = self.body.values(rotation.T @ guess.r)
+        on = frozenset(int(i) for i in np.flatnonzero(np.abs(values) < 1e-9 * self.body.radius))
+        cell = self.cell_with(on)
+        if cell is None:
+            return False
+        return self.follow([Candidate(cell, "slip", guess), Candidate(cell, "stick", guess)], thorough=True)
+
     def likely(self, predicted: list[Prediction]) -> list[Candidate]:
         """The predictor's supports, in the regime that its friction suggests first."""
         found: list[Candidate] = []
@@ -130,7 +171,7 @@ class Search:
             found += [Candidate(cell, "stick", prediction.guess), Candidate(cell, "slip", prediction.guess)]
         return found
 
-    def follow(self, queue: list[Candidate]) -> bool:
+    def follow(self, queue: list[Candidate], thorough: bool = False) -> bool:
         """Solve candidates; the neighbours that a failed one names go first."""
         queue = list(queue)
         while queue:
@@ -139,7 +180,7 @@ class Search:
             if key in self.tried:
                 continue
             self.tried.add(key)
-            z = ActiveSet(self.problem, candidate.cell, candidate.regime).solve(candidate.guess)
+            z = ActiveSet(self.problem, candidate.cell, candidate.regime).solve(candidate.guess, thorough)
             if self.offer(z):
                 return True
             if z is not None:
@@ -173,7 +214,7 @@ class Search:
 
     def exhaust(self, guess: Guess) -> bool:
         """Every cell in both regimes, the lowest first, each from a pose in which it lies level."""
-        position, rotation = self.problem.pose(guess.V)
+        _, rotation = self.problem.pose(guess.V)
         order: list[tuple[float, int, Cell]] = []
         for cell in self.body.cells:
             points = self.body.cell_points(cell, rotation)
@@ -210,7 +251,7 @@ class Search:
     def smoothed(self, guesses: list[Guess]) -> bool:
         """The homotopy's approximations, polished on the active sets that they show."""
         for z in approximations(self.problem, guesses):
-            position, rotation = self.problem.pose(z.V)
+            position, _ = self.problem.pose(z.V)
             guess = Guess(z.V, z.a1 - position, z.p, z.p_n)
             weights = z.l.copy()
             weights[z.k] = 1.0
@@ -250,3 +291,7 @@ class Search:
 def solve(problem: StepProblem) -> Solution:
     """All unknowns of a step."""
     return Search(problem).run()
+
+
+def _part_of(part: float, torque: Callable[[Array], Array], omega: Array) -> Array:
+    return part * torque(omega)

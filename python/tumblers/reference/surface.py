@@ -40,7 +40,7 @@ class HalfSpace:
         n = self.normal
         return float(n[0] * point[0] + n[1] * point[1] + n[2] * point[2] - self.offset)
 
-    def gradient(self, point: Array) -> Array:
+    def gradient(self, point: Array) -> Array:  # noqa: ARG002, RUF100
         """`∇f`, shape (3,), body frame, dimensionless."""
         return self.normal
 

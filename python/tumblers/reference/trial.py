@@ -56,4 +56,5 @@ def run(trial: Trial, start: State | None = None) -> Run:
         centroid = solution.next_patch.centroid(trial.line_width)
         states.append(state)
         steps.append(solution)
-    return Run(np.arange(count + 1) * trial.step, tuple(states), tuple(steps))
+    times: Array = np.arange(count + 1, dtype=np.float64) * trial.step
+    return Run(times, tuple(states), tuple(steps))

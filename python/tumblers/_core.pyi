@@ -1,0 +1,189 @@
+"""The native core: SI units, radians, plain numbers and arrays; ``ValueError`` with one line for what is refused."""
+
+from collections.abc import Callable, Sequence
+from typing import Literal, TypeAlias, TypedDict, final, type_check_only
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Body", "Field", "Trial", "simulate", "step", "sweep"]
+
+_Numbers: TypeAlias = Sequence[float] | NDArray[np.float64]
+_Rows: TypeAlias = Sequence[Sequence[float]] | NDArray[np.float64]
+_Floats: TypeAlias = NDArray[np.float64]
+
+@type_check_only
+class _Run(TypedDict):
+    time_s: _Floats
+    position_m: _Floats
+    orientation: _Floats
+    linear_velocity_m_per_s: _Floats
+    angular_velocity_rad_per_s: _Floats
+    ecp_m: _Floats
+    contact_mode: NDArray[np.int8]
+    normal_force_N: _Floats
+    friction_force_N: _Floats
+    adhesion_force_N: _Floats
+    slip_speed_m_per_s: _Floats
+    residual: _Floats
+    newton_iterations: NDArray[np.int64]
+    twist_rad: float
+    drift_m: float
+    speed_m_per_s: float
+    unconverged_steps: int
+    max_residual: float
+    max_penetration_m: float
+
+@type_check_only
+class _Sweep(TypedDict):
+    twist_rad: _Floats
+    drift_m: _Floats
+    speed_m_per_s: _Floats
+    unconverged_steps: NDArray[np.int64]
+    newton_iterations: NDArray[np.int64]
+    max_residual: _Floats
+    max_penetration_m: _Floats
+    error: list[str | None]
+
+@type_check_only
+class _Step(TypedDict):
+    linear_velocity_m_per_s: _Floats
+    angular_velocity_rad_per_s: _Floats
+    ecp_m: _Floats
+    ecp_substrate_m: _Floats
+    friction_impulse: _Floats
+    multipliers: _Floats
+    plane_multiplier: float
+    sigma: float
+    normal_impulse: float
+    active: int
+    residual: float
+    penetration_m: float
+    contact_mode: int
+    area_m2: float
+    newton_iterations: int
+    converged: bool
+
+@final
+class Body:
+    """A body in its own frame (y along the length, x the width, z the height), origin at the centre of mass."""
+
+    @staticmethod
+    def cuboid(length_m: float, width_m: float, height_m: float, draft_rad: float) -> Body: ...
+    @staticmethod
+    def spiked(
+        length_m: float,
+        width_m: float,
+        height_m: float,
+        spike_base_m: float,
+        overall_height_m: float,
+        draft_rad: float,
+        draft_as_released: bool,
+    ) -> Body: ...
+    @staticmethod
+    def spiked_ends(
+        length_m: float,
+        width_m: float,
+        height_m: float,
+        spike_base_m: float,
+        spike_height_m: float,
+        draft_rad: float,
+        draft_as_released: bool,
+    ) -> Body: ...
+    @staticmethod
+    def curved(
+        outer_radius_m: float, inner_radius_m: float, half_angle_rad: float, width_m: float, draft_rad: float
+    ) -> Body: ...
+    @staticmethod
+    def ellipsoid(semi_axes_m: _Numbers) -> Body: ...
+    @staticmethod
+    def hull(vertices_m: _Rows) -> Body: ...
+    @property
+    def volume_m3(self) -> float:
+        """Volume of the real body, m³."""
+    @property
+    def unit_inertia_m2(self) -> _Floats:
+        """Inertia about the centre of mass over the mass, body frame, m², shape (3, 3)."""
+    @property
+    def size_m(self) -> float:
+        """Greatest distance of a point from the centre of mass, m."""
+    @property
+    def hull_perimeter_m(self) -> float:
+        """Perimeter of the hull's side profile, m."""
+    @property
+    def outline(self) -> list[_Floats]:
+        """Faces of the real body as polygons, body frame, m, each of shape (k, 3)."""
+
+@final
+class Field:
+    """A uniform magnetic field over time, substrate frame, T."""
+
+    @staticmethod
+    def rotating(
+        strength_T: float, frequency_Hz: float, rotation_axis: _Numbers, initial_direction: _Numbers
+    ) -> Field: ...
+    @staticmethod
+    def uniform(strength_T: float, direction: _Numbers) -> Field: ...
+    @staticmethod
+    def table(time_s: _Numbers, field_T: _Rows) -> Field: ...
+    def at(self, time_s: float) -> list[float]:
+        """Return B(t), T."""
+
+@final
+class Trial:
+    """A robot on a substrate in a field for a time, every number checked."""
+
+    def __new__(
+        cls,
+        *,
+        body: Body,
+        mass_kg: float,
+        magnetic_moment_A_m2: _Numbers,
+        friction_coefficient: float,
+        friction_ellipsoid: _Numbers,
+        adhesion_N_per_m2: float,
+        electrostatic_force_N: float,
+        line_contact_width_m: float,
+        field: Field,
+        incline_rad: float,
+        gravity_m_per_s2: float,
+        duration_s: float,
+        step_s: float,
+        magnetic_torque: str,
+        adhesion_acts_at: str,
+        adhesion_enters: str,
+        position_m: _Numbers | None = None,
+        orientation: _Numbers | None = None,
+        linear_velocity_m_per_s: _Numbers = ...,
+        angular_velocity_rad_per_s: _Numbers = ...,
+    ) -> Trial: ...
+    @property
+    def stability_bound_s(self) -> float:
+        """Largest stable step of ``start_of_step``, s."""
+    @property
+    def steps(self) -> int:
+        """Number of steps of the run."""
+
+def simulate(
+    trial: Trial,
+    every: int,
+    solver: Literal["reduced", "general"] = "reduced",
+    on_progress: Callable[[int], None] | None = None,
+) -> _Run:
+    """Run a trial; a row for the start, every `every`-th step and the end."""
+
+def sweep(trials: Sequence[Trial], threads: int = 0, on_progress: Callable[[int], None] | None = None) -> _Sweep:
+    """Run trials in parallel (0: all threads); the same bits for any number of threads."""
+
+def step(
+    trial: Trial,
+    time_s: float,
+    position_m: _Numbers,
+    orientation: _Numbers,
+    linear_velocity_m_per_s: _Numbers,
+    angular_velocity_rad_per_s: _Numbers,
+    adhesion_force_N: float,
+    patch_centroid_m: _Numbers,
+    solver: Literal["reduced", "general"] = "reduced",
+) -> _Step:
+    """Make one step and return all its unknowns, for parity tests."""

@@ -1,0 +1,59 @@
+"""The CSV of a tabulated field."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+from .check import Vector
+from .errors import InputError, show
+
+__all__ = ["read_field_csv"]
+
+_COLUMNS = ("time_s", "Bx_T", "By_T", "Bz_T")
+
+
+def read_field_csv(key: str, path: Path) -> tuple[tuple[float, ...], tuple[Vector, ...]]:
+    """Return the times (s) and the fields (T) of a CSV with columns time_s, Bx_T, By_T, Bz_T.
+
+    Raises
+    ------
+    InputError
+        For `key`: a file that cannot be read, other columns, a cell that is not a finite number, or rows that are out
+        of order or too few.
+    """
+    try:
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else "no UTF-8 text"
+        raise InputError(key, f"{path}: {reason}", "a readable CSV file") from None
+    try:
+        table = [(number, row) for number, row in enumerate(csv.reader(lines, strict=True), 1) if row]
+    except csv.Error as error:
+        raise InputError(key, f"{path}: {error}", "a CSV file") from None
+    header = [cell.strip() for cell in table[0][1]] if table else []
+    if sorted(header) != sorted(_COLUMNS):
+        raise InputError(key, f"{path} with the columns {show(header)}", f"the columns {', '.join(_COLUMNS)}")
+    rows = [_row(key, path, line, row, header) for line, row in table[1:]]
+    if len(rows) < 2:
+        raise InputError(key, f"{path} with {len(rows)} rows", "at least 2")
+    for (line, _), before, row in zip(table[2:], rows, rows[1:], strict=False):
+        if not row[0] > before[0]:
+            raise InputError(key, f"{path} line {line} at {row[0]} s", f"a time after {before[0]} s")
+    return tuple(row[0] for row in rows), tuple((row[1], row[2], row[3]) for row in rows)
+
+
+def _row(key: str, path: Path, line: int, row: list[str], header: list[str]) -> list[float]:
+    if len(row) != len(header):
+        raise InputError(key, f"{path} line {line} with {len(row)} cells", f"{len(header)}")
+    cells = dict(zip(header, row, strict=True))
+    found = []
+    for name in _COLUMNS:
+        try:
+            value = float(cells[name])
+        except ValueError:
+            value = float("nan")
+        if not abs(value) < float("inf"):
+            raise InputError(key, f"{path} line {line}: {name} {show(cells[name])}", "a finite number")
+        found.append(value)
+    return found

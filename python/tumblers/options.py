@@ -1,0 +1,59 @@
+"""What the command line reads from its options."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from math import floor
+from pathlib import Path
+
+from .check import number
+from .errors import InputError
+
+__all__ = ["PLOT_SUFFIXES", "magnetization_cases", "numbers", "output_file"]
+
+PLOT_SUFFIXES = (".png", ".pdf", ".svg")
+_MOST = 100_000
+_EXPECTED = "numbers such as 0,1,2 or a range such as 0:15 or 10:360:10"
+
+
+def numbers(option: str, text: str) -> list[float]:
+    """Return the numbers of ``0,1,2``, ``0:15`` (both ends, step 1) or ``10:360:10``, or a mixture."""
+    found: list[float] = []
+    for part in text.split(","):
+        bounds = [_number(option, text, word) for word in part.split(":")]
+        if len(bounds) == 1:
+            found += bounds
+            continue
+        first, last, step = [*bounds, 1.0] if len(bounds) == 2 else bounds if len(bounds) == 3 else [0.0, 0.0, 0.0]
+        if step <= 0.0 or last < first or (last - first) / step > _MOST:
+            raise InputError(option, repr(text), _EXPECTED)
+        count = floor((last - first) / step * (1.0 + 1e-12) + 1e-9) + 1
+        found += [first + i * step for i in range(count)]
+    return found
+
+
+def _number(option: str, text: str, word: str) -> float:
+    try:
+        return number(option, float(word))
+    except ValueError:
+        raise InputError(option, repr(text), _EXPECTED) from None
+
+
+def magnetization_cases(theta1: Sequence[float], theta2: Sequence[float]) -> list[tuple[float, float]]:
+    """Return each θ1 with each θ2, degrees; θ1 = 0 once, since θ2 has no meaning there."""
+    return [pair for first in theta1 for pair in ([(first, t) for t in theta2] if first != 0.0 else [(0.0, 0.0)])]
+
+
+def output_file(option: str, path: Path, suffixes: Sequence[str], taken: Sequence[Path]) -> None:
+    """Refuse a file that could not be written in the end, before anything is computed."""
+    if path.suffix.lower() not in suffixes:
+        raise InputError(option, f"'{path}'", f"a file name that ends in {' or '.join(suffixes)}")
+    if path.is_dir():
+        raise InputError(option, f"the folder '{path}'", "a file")
+    if not path.parent.is_dir():
+        raise InputError(option, f"'{path}'", f"a file in a folder that exists, '{path.parent}' does not")
+    if not os.access(path.parent, os.W_OK | os.X_OK):
+        raise InputError(option, f"'{path}'", f"a file in a folder that can be written to, '{path.parent}' cannot")
+    if any(path.resolve() == other.resolve() for other in taken):
+        raise InputError(option, f"'{path}'", "a file that is not named twice")

@@ -1,0 +1,47 @@
+"""`Substrate`: friction, adhesion and electrostatic attraction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .check import Vector, number, vector
+
+__all__ = ["Substrate"]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Substrate:
+    """What the robot stands on.
+
+    Attributes
+    ----------
+    friction_coefficient
+        μ of the paper.
+    friction_ellipsoid
+        e_t, e_o (no unit) and e_r (m). The default e_r of 0.1 m is that of the authors' released code.
+    adhesion_N_per_m2
+        C of the paper, N per m² of area that really touches.
+    electrostatic_force_N
+        F_elect of the paper, N, towards the substrate.
+    line_contact_width_m
+        Width of the strip that counts as area where a line touches, m; 0 is the paper's model.
+
+    Raises
+    ------
+    InputError
+        A number that is refused.
+    """
+
+    friction_coefficient: float
+    friction_ellipsoid: Vector = (1.0, 1.0, 0.1)
+    adhesion_N_per_m2: float = 0.0
+    electrostatic_force_N: float = 0.0
+    line_contact_width_m: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("friction_coefficient", "adhesion_N_per_m2", "electrostatic_force_N", "line_contact_width_m"):
+            object.__setattr__(self, name, number(f"substrate.{name}", getattr(self, name), least=0.0))
+        ellipsoid = vector("substrate.friction_ellipsoid", self.friction_ellipsoid)
+        for i, axis in enumerate(ellipsoid):
+            number(f"substrate.friction_ellipsoid[{i}]", axis, above=0.0)
+        object.__setattr__(self, "friction_ellipsoid", ellipsoid)

@@ -1,0 +1,195 @@
+"""`sweep`: a grid of drafts and magnetization errors as an xarray Dataset."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from math import isfinite
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from . import _core
+from .check import sequence
+from .errors import InputError, TumblersError, show
+from .field import RotatingField
+from .progress import OnProgress, native_call
+from .scenario import Scenario
+from .shape import Cuboid, Spiked, SpikedEnds
+from .simulate import FLIP_DEG
+from .version import __version__
+
+__all__ = [
+    "DRIFT_LIMIT_M",
+    "PAPER_DRAFTS_DEG",
+    "PAPER_MAGNETIZATION_DEG",
+    "faster_cases",
+    "ideal_speed",
+    "preferred_cases",
+    "sweep",
+]
+
+PAPER_DRAFTS_DEG: tuple[float, ...] = tuple(float(draft) for draft in range(16))
+PAPER_MAGNETIZATION_DEG: tuple[tuple[float, float], ...] = (
+    (0.0, 0.0),
+    *((10.0, 10.0 * n) for n in range(1, 37)),
+)
+DRIFT_LIMIT_M = 50e-6
+
+# name: (units, meaning)
+_VARIABLES = {
+    "twist_deg": ("degree", "twist about the long axis after one cycle"),
+    "drift_m": ("m", "displacement along x after one cycle"),
+    "speed_m_per_s": ("m s-1", "displacement along y over the time"),
+    "flipped": ("1", f"|twist| > {FLIP_DEG:g} degrees"),
+    "unconverged_steps": ("1", "steps that did not converge (0 where the case failed: see error)"),
+    "newton_iterations": ("1", "Newton iterations of the whole run (0 where the case failed: see error)"),
+    "max_residual": ("1", "largest scaled natural residual of a step"),
+    "max_penetration_m": ("m", "largest penetration"),
+    "error": ("", "why the case failed, empty if it did not"),
+}
+
+
+def sweep(
+    scenario: Scenario,
+    *,
+    drafts_deg: Sequence[float] = PAPER_DRAFTS_DEG,
+    magnetization: Sequence[tuple[float, float]] = PAPER_MAGNETIZATION_DEG,
+    threads: int | None = None,
+    progress: bool | OnProgress = False,
+) -> xr.Dataset:
+    """Run a scenario for every draft and every magnetization error: one native call.
+
+    Parameters
+    ----------
+    scenario
+        What all cases have in common.
+    drafts_deg
+        Drafts φ, degrees; the paper's 0° to 15° by default.
+    magnetization
+        Pairs θ1, θ2, degrees; the paper's 37 by default: θ1 = 0, and θ1 = 10° with θ2 = 10° to 360°.
+    threads
+        Number of threads, all by default. The result does not depend on it.
+    progress
+        True for a progress bar over the cases, or a callback that is told how many are done.
+
+    Returns
+    -------
+    xarray.Dataset
+        Dimensions ``draft_deg`` and ``magnetization_case`` (coordinates ``theta1_deg``, ``theta2_deg``):
+        ``twist_deg``, ``drift_m``, ``speed_m_per_s``, ``flipped``, ``unconverged_steps``, ``newton_iterations``,
+        ``max_residual``, ``max_penetration_m``, ``error``. A case that failed, or that could not even be built, is NaN
+        and says why in ``error``. Attributes: the scenario's TOML, and the ideal and the flipped speed where the field
+        and the shape have them.
+
+    Raises
+    ------
+    InputError
+        A scenario, a grid or a number of threads that is refused.
+    SimulationError
+        The native module gave up.
+    """
+    drafts = sequence("drafts_deg", drafts_deg, "a list of numbers", _angle)
+    cases = sequence("magnetization", magnetization, "a list of pairs of numbers", _pair)
+    if not drafts or not cases:
+        raise InputError("magnetization" if drafts else "drafts_deg", "an empty list", "at least one case")
+    if threads is not None and (isinstance(threads, bool) or not isinstance(threads, int) or threads < 1):
+        raise InputError("threads", show(threads), "a whole number of at least 1")
+    trials: list[_core.Trial] = []
+    errors = []
+    for draft in drafts:
+        for theta1, theta2 in cases:
+            try:
+                robot = scenario.robot.with_draft(draft).with_magnetization(theta1, theta2)
+                trials.append(replace(scenario, robot=robot).trial())
+                errors.append("")
+            except TumblersError as reason:
+                errors.append(str(reason))
+    built = np.array([not error for error in errors], dtype=bool)
+    with native_call("cases", len(trials), progress) as on_progress:
+        results: Mapping[str, Any] = _core.sweep(trials, threads or 0, on_progress)
+    for case, error in zip(np.flatnonzero(built), results["error"], strict=True):
+        errors[case] = " ".join((error or "").split())
+    failed = np.array([bool(error) for error in errors], dtype=bool)
+    ran = ~failed[built]
+
+    def column(name: str, missing: float) -> np.ndarray[Any, Any]:
+        values = np.full(len(errors), missing, dtype=np.float64 if np.isnan(missing) else np.int64)
+        values[~failed] = np.asarray(results[name])[ran]
+        return values
+
+    twist = np.degrees(column("twist_rad", np.nan))
+    columns: dict[str, np.ndarray[Any, Any]] = {
+        "twist_deg": twist,
+        "drift_m": column("drift_m", np.nan),
+        "speed_m_per_s": column("speed_m_per_s", np.nan),
+        "flipped": np.abs(twist) > FLIP_DEG,
+        "unconverged_steps": column("unconverged_steps", 0),
+        "newton_iterations": column("newton_iterations", 0),
+        "max_residual": column("max_residual", np.nan),
+        "max_penetration_m": column("max_penetration_m", np.nan),
+        "error": np.array(errors, dtype=object),
+    }
+    dims = ("draft_deg", "magnetization_case")
+    variables = {
+        name: (dims, columns[name].reshape(len(drafts), len(cases)), _attributes(units, meaning))
+        for name, (units, meaning) in _VARIABLES.items()
+    }
+    theta1, theta2 = np.array(cases, dtype=np.float64).T
+    coordinates = {
+        "draft_deg": ("draft_deg", np.array(drafts), _attributes("degree", "draft angle")),
+        "theta1_deg": ("magnetization_case", theta1, _attributes("degree", "θ1, off the long axis")),
+        "theta2_deg": ("magnetization_case", theta2, _attributes("degree", "θ2, about the long axis")),
+    }
+    attrs = {"title": "tumblers sweep", "tumblers_version": __version__, "scenario": scenario.to_toml()}
+    return xr.Dataset(variables, coordinates, attrs=attrs | _speeds(scenario))
+
+
+def _attributes(units: str, meaning: str) -> dict[str, str]:
+    return {"units": units, "long_name": meaning} if units else {"long_name": meaning}
+
+
+def _angle(key: str, value: object) -> float:
+    # Angles of any size pass: one that cannot be built is that case's error, not the sweep's.
+    if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.integer | np.floating):
+        raise InputError(key, show(value), "a number")
+    return float(value)
+
+
+def _pair(key: str, value: object) -> tuple[float, float]:
+    pair = sequence(key, value, "a pair θ1, θ2", _angle)
+    if len(pair) != 2:
+        raise InputError(key, show(value), "a pair θ1, θ2")
+    return pair[0], pair[1]
+
+
+def ideal_speed(scenario: Scenario) -> float | None:
+    """Return the speed without slip, hull perimeter × frequency, m/s; None if the field does not rotate."""
+    if not isinstance(scenario.field, RotatingField):
+        return None
+    return scenario.robot.with_draft(0.0).body().hull_perimeter_m * scenario.field.frequency_Hz
+
+
+def _speeds(scenario: Scenario) -> dict[str, float]:
+    ideal = ideal_speed(scenario)
+    if ideal is None or not isfinite(ideal) or not isinstance(scenario.field, RotatingField):
+        return {}
+    speeds = {"ideal_speed_m_per_s": ideal}
+    shape = scenario.robot.shape
+    if isinstance(shape, Cuboid | Spiked | SpikedEnds):
+        speeds["flipped_speed_m_per_s"] = 2.0 * (shape.length_m + shape.width_m) * scenario.field.frequency_Hz
+    return speeds
+
+
+def preferred_cases(dataset: xr.Dataset) -> xr.DataArray:
+    """Return which cases of a sweep the paper marks: no flip, and a drift of at most 50 µm."""
+    straight: xr.DataArray = abs(dataset["drift_m"]) <= DRIFT_LIMIT_M
+    return straight & ~dataset["flipped"]
+
+
+def faster_cases(dataset: xr.Dataset) -> xr.DataArray:
+    """Return which of the preferred cases are also faster than the ideal robot: none where no ideal is known."""
+    ideal = dataset.attrs.get("ideal_speed_m_per_s", np.inf)
+    fast: xr.DataArray = dataset["speed_m_per_s"] > ideal
+    return preferred_cases(dataset) & fast
