@@ -58,25 +58,20 @@ enum Wanted {
 /// The step's solution by exchanging supports from `warm`, or by trying all of them; if there is none, the closest.
 pub fn search(step: &Step, warm: &Warm) -> Found {
     let mut iterations = 0;
-    let mut last = None;
-    for wanted in [Wanted::Solution, Wanted::Closest] {
-        let found = match exchange(step, warm, wanted, &mut iterations) {
-            Ok(found) => Some(found),
-            Err(left) => {
-                last.get_or_insert(left);
-                try_all(step, warm, wanted, &mut iterations)
-            }
-        };
-        if let Some(found) = found {
-            return Found { right: wanted == Wanted::Solution, iterations, ..found };
-        }
+    let exact = exchange(step, warm, Wanted::Solution, &mut iterations);
+    if exact.right {
+        return Found { iterations, ..exact };
     }
-    let found = last.expect("an exchange that fails leaves where it ended");
-    Found { iterations, ..found }
+    if let Some(found) = try_all(step, warm, Wanted::Solution, &mut iterations) {
+        return Found { iterations, ..found };
+    }
+    let closest = exchange(step, warm, Wanted::Closest, &mut iterations);
+    let found = if closest.right { Some(closest) } else { try_all(step, warm, Wanted::Closest, &mut iterations) };
+    Found { right: false, iterations, ..found.unwrap_or(exact) }
 }
 
-/// Exchanges supports from `warm` until one is right, or says where it ended.
-fn exchange(step: &Step, warm: &Warm, wanted: Wanted, iterations: &mut u32) -> Result<Found, Found> {
+/// Exchanges supports from `warm` until one is right, or as far as that leads.
+fn exchange(step: &Step, warm: &Warm, wanted: Wanted, iterations: &mut u32) -> Found {
     let mut visited = [Support::None; MAX_EXCHANGES];
     let mut support = warm.support;
     let mut start = warm.unknowns;
@@ -89,13 +84,13 @@ fn exchange(step: &Step, warm: &Warm, wanted: Wanted, iterations: &mut u32) -> R
         *iterations += reduced.iterations;
         let found = Found { support, at: reduced.at, iterations: *iterations, right: false };
         if !reduced.converged {
-            return Err(found);
+            return found;
         }
         match judge(step, support, &reduced.at) {
-            Verdict::Right => return Ok(Found { right: true, ..found }),
+            Verdict::Right => return Found { right: true, ..found },
             Verdict::Exchange(next) => {
                 if tried == MAX_EXCHANGES || visited[..tried].contains(&next) {
-                    return Err(found);
+                    return found;
                 }
                 start = fresh_start(step, next, &reduced.at);
                 if let (Support::Face(_), Support::Point(generator)) = (support, next) {

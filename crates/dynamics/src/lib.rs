@@ -19,6 +19,7 @@ pub mod metrics;
 pub mod model;
 pub mod predictor;
 pub mod problem;
+mod problem_jacobian;
 pub mod recording;
 pub mod reduced;
 pub mod residual;

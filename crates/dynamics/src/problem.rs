@@ -23,17 +23,15 @@
 //! Impulses are in units of the load `P` that is known before the step, velocities of `P/m`, lengths of `ℓ`; `p_t`,
 //! `p_o`, `p_r` also of `e_t`, `e_o`, `e_r`, so that the friction rows are alike.
 
-use crate::rotation::{cayley, cayley_tangent};
+use crate::rotation::cayley;
 use crate::step::Step;
 use crate::{Mat3, StepSolution, Vec3};
-use faer::MatMut;
-use nalgebra::RowVector3;
 use std::cmp::Ordering;
 
 /// Equality rows and free unknowns, `l_k` the last of them.
 pub const FREE: usize = 16;
 /// Where `l_k` and the row of `f_k` are.
-const ACTIVE: usize = FREE - 1;
+pub(crate) const ACTIVE: usize = FREE - 1;
 
 /// The unreduced problem of a step for the active index `k`.
 #[derive(Debug, Clone, Copy)]
@@ -43,18 +41,18 @@ pub struct StepProblem<'a> {
 }
 
 /// `z` as vectors, in SI units.
-struct Point {
-    linear: Vec3,
-    angular: Vec3,
-    ecp: Vec3,
-    ecp_substrate: Vec3,
-    friction: Vec3,
-    sigma: f64,
-    normal: f64,
-    rotation: Mat3,
+pub(crate) struct Point {
+    pub linear: Vec3,
+    pub angular: Vec3,
+    pub ecp: Vec3,
+    pub ecp_substrate: Vec3,
+    pub friction: Vec3,
+    pub sigma: f64,
+    pub normal: f64,
+    pub rotation: Mat3,
     /// `a1 - q⁺`, `a2 - q⁺`.
-    arm: Vec3,
-    arm_substrate: Vec3,
+    pub arm: Vec3,
+    pub arm_substrate: Vec3,
 }
 
 impl<'a> StepProblem<'a> {
@@ -96,12 +94,12 @@ impl<'a> StepProblem<'a> {
     }
 
     /// `ℓ` over the unit of velocities: from angular velocities to numbers.
-    fn angular_scale(&self) -> f64 {
+    pub(crate) fn angular_scale(&self) -> f64 {
         self.step.size / self.velocity_unit()
     }
 
     /// The impulse units of `p_t`, `p_o`, `p_r`.
-    fn friction_units(&self) -> Vec3 {
+    pub(crate) fn friction_units(&self) -> Vec3 {
         self.step.ellipsoid * self.impulse_unit()
     }
 
@@ -147,7 +145,7 @@ impl<'a> StepProblem<'a> {
         solution.slip = slip(&point);
     }
 
-    fn point(&self, z: &[f64]) -> Point {
+    pub(crate) fn point(&self, z: &[f64]) -> Point {
         let step = self.step;
         let (_, sigma, normal) = self.last_slots();
         let vector = |at: usize| Vec3::new(z[at], z[at + 1], z[at + 2]);
@@ -169,12 +167,12 @@ impl<'a> StepProblem<'a> {
     }
 
     /// `N` at the ECP for `p_n`.
-    fn at_ecp(&self, normal: f64) -> f64 {
+    pub(crate) fn at_ecp(&self, normal: f64) -> f64 {
         if self.step.pulls_at_ecp { normal - self.step.adhesion } else { normal }
     }
 
     /// `∇f_i` in the substrate frame, at `arm` from the centre of mass.
-    fn gradient(&self, surface: usize, point: &Point, arm: &Vec3) -> Vec3 {
+    pub(crate) fn gradient(&self, surface: usize, point: &Point, arm: &Vec3) -> Vec3 {
         point.rotation * self.step.body.surfaces()[surface].gradient(&(point.rotation.transpose() * arm))
     }
 
@@ -183,11 +181,11 @@ impl<'a> StepProblem<'a> {
     }
 
     /// The weight of `∇f_i` in `C_F`.
-    fn weight(&self, surface: usize, z: &[f64]) -> f64 {
+    pub(crate) fn weight(&self, surface: usize, z: &[f64]) -> f64 {
         if surface == self.active { 1.0 } else { z[self.slot(surface)] }
     }
 
-    fn normal_cone(&self, z: &[f64], point: &Point) -> Vec3 {
+    pub(crate) fn normal_cone(&self, z: &[f64], point: &Point) -> Vec3 {
         (0..self.surfaces())
             .filter(|i| self.weight(*i, z) != 0.0)
             .map(|i| self.gradient(i, point, &point.arm) * self.weight(i, z))
@@ -232,137 +230,13 @@ impl<'a> StepProblem<'a> {
     }
 
     /// The index and value of `max_i f_i(a2)`.
-    fn greatest(&self, point: &Point) -> (usize, f64) {
+    pub(crate) fn greatest(&self, point: &Point) -> (usize, f64) {
         self.step.body.max_value(&(point.rotation.transpose() * point.arm_substrate))
-    }
-
-    /// The Jacobian of [`Self::rows`].
-    pub fn jacobian_of_rows(&self, z: &[f64], mut out: MatMut<'_, f64>) {
-        let (m, step) = (self.surfaces(), self.step);
-        let at = self.point(z);
-        let impulse = self.impulse_unit();
-        let units = self.friction_units();
-        let (plane, sigma, normal) = self.last_slots();
-        out.fill(0.0);
-        let mut put = |row: usize, column: usize, block: &Mat3| {
-            for i in 0..3 {
-                for j in 0..3 {
-                    out[(row + i, column + j)] += block[(i, j)];
-                }
-            }
-        };
-        let turn = cayley_tangent(&at.angular, 0.5 * step.h) / self.angular_scale();
-        // ∂(h v⁺)/∂v⁺ in units.
-        let travel = step.h / self.angular_scale();
-        let arm = at.arm / step.size;
-        let contact = Vec3::new(at.friction.x, at.friction.y, self.at_ecp(at.normal)) / impulse;
-
-        put(0, 0, &Mat3::identity());
-        let (_, torque) = step.torque.impulse(&at.angular);
-        put(3, 3, &((step.inertia - torque) / (impulse * step.size * self.angular_scale())));
-        put(3, 6, &contact.cross_matrix());
-        put(3, 0, &(-contact.cross_matrix() * travel));
-
-        let k = z[ACTIVE];
-        let cone = self.normal_cone(z, &at);
-        let mut by_arm = Mat3::zeros();
-        let mut by_turn = Mat3::zeros();
-        for i in 0..m {
-            let weight = self.weight(i, z);
-            if weight == 0.0 {
-                continue;
-            }
-            let body_arm = at.rotation.transpose() * at.arm;
-            let hessian = step.body.surfaces()[i].hessian(&body_arm) * step.size;
-            let curvature = at.rotation * hessian * at.rotation.transpose();
-            let gradient = self.gradient(i, &at, &at.arm);
-            by_arm += curvature * weight;
-            by_turn += (curvature * arm.cross_matrix() - gradient.cross_matrix()) * weight;
-        }
-        put(6, 6, &(Mat3::identity() + by_arm * k));
-        put(6, 9, &-Mat3::identity());
-        put(6, 0, &(-by_arm * (k * travel)));
-        put(6, 3, &(by_turn * turn * k));
-        put(9, 6, &by_arm);
-        put(9, 0, &(-by_arm * travel));
-        put(9, 3, &(by_turn * turn));
-
-        let e = step.ellipsoid;
-        let bound = step.friction.of(step.bound_impulse(at.normal)) / impulse;
-        let angular = at.angular * self.angular_scale();
-        let mut slip_by_arm = angular.cross_matrix();
-        let mut slip_by_linear = Mat3::identity() - slip_by_arm * travel;
-        let mut slip_by_angular = -arm.cross_matrix();
-        slip_by_arm.set_row(2, &RowVector3::zeros());
-        slip_by_linear.set_row(2, &RowVector3::zeros());
-        slip_by_angular.set_row(2, &RowVector3::new(0.0, 0.0, 1.0 / step.size));
-        let scale = Mat3::from_diagonal(&(e * bound));
-        put(12, 0, &(scale * slip_by_linear));
-        put(12, 3, &(scale * slip_by_angular));
-        put(12, 6, &(scale * slip_by_arm));
-        put(12, 12, &Mat3::from_diagonal_element(z[sigma]));
-
-        let slip = slip(&at) / self.velocity_unit();
-        let axes = [Vec3::x(), Vec3::y(), Vec3::z()];
-        for i in 0..3 {
-            // p_t, p_o, p_r in the momentum rows.
-            let unit = units[i] / impulse;
-            if i < 2 {
-                out[(i, 12 + i)] -= unit;
-                let lever = arm.cross(&axes[i]) * unit;
-                for j in 0..3 {
-                    out[(3 + j, 12 + i)] -= lever[j];
-                }
-            } else {
-                out[(5, 14)] -= unit / step.size;
-            }
-            let lever = arm.cross(&Vec3::z());
-            out[(3 + i, normal)] -= lever[i];
-            out[(6 + i, ACTIVE)] += cone[i];
-            out[(12 + i, sigma)] += z[12 + i];
-            out[(12 + i, normal)] += e[i] * slip[i] * step.friction.slope();
-            out[(sigma, 12 + i)] -= 2.0 * z[12 + i];
-        }
-        out[(2, normal)] -= 1.0;
-        out[(11, plane)] += 1.0;
-        for i in 0..m {
-            let gradient = self.gradient(i, &at, &at.arm);
-            if i != self.active {
-                for j in 0..3 {
-                    out[(6 + j, self.slot(i))] += gradient[j] * k;
-                    out[(9 + j, self.slot(i))] += gradient[j];
-                }
-            }
-            put_value_row(&mut out, (self.slot(i), 6), &(-gradient), &arm, &turn, travel);
-        }
-        out[(plane, 11)] -= 1.0;
-        out[(sigma, normal)] += 2.0 * bound * step.friction.slope();
-        let (surface, _) = self.greatest(&at);
-        let gradient = self.gradient(surface, &at, &at.arm_substrate);
-        put_value_row(&mut out, (normal, 9), &gradient, &(at.arm_substrate / step.size), &turn, travel);
-    }
-}
-
-/// `∂f(Rᵀ(a - q⁺))` for the gradient `∇f`: by `a` `∇f`, by `v⁺` `-h ∇f`, by `ω⁺` `-(r × ∇f)ᵀ dφ/dω`. `place` is the row,
-/// and the column of `a`.
-fn put_value_row(
-    out: &mut MatMut<'_, f64>,
-    place: (usize, usize),
-    gradient: &Vec3,
-    arm: &Vec3,
-    turn: &Mat3,
-    travel: f64,
-) {
-    let by_angular = -arm.cross(gradient).transpose() * turn;
-    for j in 0..3 {
-        out[(place.0, place.1 + j)] += gradient[j];
-        out[(place.0, j)] -= gradient[j] * travel;
-        out[(place.0, 3 + j)] += by_angular[j];
     }
 }
 
 /// `u = [W_t W_o W_r]ᵀV⁺`.
-fn slip(at: &Point) -> Vec3 {
+pub(crate) fn slip(at: &Point) -> Vec3 {
     let surface = at.linear + at.angular.cross(&at.arm);
     Vec3::new(surface.x, surface.y, at.angular.z)
 }

@@ -1,6 +1,7 @@
 //! The solution of one step: every unknown of the paper's problem.
 
-use crate::Vec3;
+use crate::rotation::{advance, matrix};
+use crate::{State, Vec3};
 use geometry::{Body, Patch, Support};
 
 /// `[V⁺; a1; a2; p_t; p_o; p_r]`, `[l; l_{m+1}; σ; p_n]` and what follows from them.
@@ -58,6 +59,15 @@ impl StepSolution {
             iterations: 0,
             converged: true,
         }
+    }
+}
+
+impl StepSolution {
+    /// `∇f_i(a1)` of every surface after a step of length `h` that began in `state`, in the substrate frame.
+    pub fn gradients(&self, body: &Body, state: &State, h: f64) -> Vec<Vec3> {
+        let rotation = matrix(&advance(&state.orientation, &self.angular, h));
+        let point = rotation.transpose() * (self.ecp - state.position - self.linear * h);
+        body.surfaces().iter().map(|surface| rotation * surface.gradient(&point)).collect()
     }
 }
 

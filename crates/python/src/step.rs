@@ -1,6 +1,6 @@
 //! `step`: one step and all its unknowns, for parity tests.
 
-use crate::convert::{quaternion, refused, solver, vector};
+use crate::convert::{quaternion, refused, solver, table, vector};
 use crate::trial::PyTrial;
 use dynamics::{Adhesion, State, Stepper};
 use geometry::Support;
@@ -45,6 +45,9 @@ pub fn step<'py>(
     out.set_item("ecp_substrate_m", vector(py, solution.ecp_substrate))?;
     out.set_item("friction_impulse", vector(py, solution.friction))?;
     out.set_item("multipliers", PyArray1::from_slice(py, &solution.multipliers))?;
+    let gradients = solution.gradients(trial.0.robot().body(), &state, h);
+    let gradients: Vec<[f64; 3]> = gradients.into_iter().map(Into::into).collect();
+    out.set_item("gradients", table(py, &gradients)?)?;
     out.set_item("plane_multiplier", solution.plane_multiplier)?;
     out.set_item("sigma", solution.sigma)?;
     out.set_item("normal_impulse", solution.normal)?;
