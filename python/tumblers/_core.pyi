@@ -53,6 +53,7 @@ class _Step(TypedDict):
     ecp_substrate_m: _Floats
     friction_impulse: _Floats
     multipliers: _Floats
+    gradients: _Floats
     plane_multiplier: float
     sigma: float
     normal_impulse: float

@@ -289,3 +289,6 @@ fn assemble<const N: usize>(
     let at = Evaluation { unknowns: *x, linear, rotation, height, normal, arm, slip, slips, error };
     (at, rows, jacobian)
 }
+
+#[cfg(test)]
+mod tests;
