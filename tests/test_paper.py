@@ -22,9 +22,7 @@ def speed_after_first_turn(run: xr.Dataset, frequency_Hz: float) -> float:
 
 def on_paper(frequency_Hz: float, step_s: float, model: Model) -> xr.Dataset:
     field = tumblers.drive(0.010, frequency_Hz)
-    scenario = preset_scenario(
-        "cuboid_on_paper", drive=field, duration_s=6 / frequency_Hz, step_s=step_s, model=model
-    )
+    scenario = preset_scenario("cuboid_on_paper", drive=field, duration_s=6 / frequency_Hz, step_s=step_s, model=model)
     run = tumblers.simulate(scenario)
     assert run.attrs["unconverged_steps"] == 0
     return run
