@@ -53,7 +53,8 @@ fn cuboid_parts(frequency: f64) -> TrialParts {
         line_contact_width: 0.0,
     };
     let body = Body::cuboid(8e-4, 4e-4, 1e-4, draft(0.0)).expect("the cuboid");
-    parts(body, 3.78e-8, Vec3::new(0.0, 2.9e-11 * 15000.0, 0.0), substrate, 0.01, frequency)
+    let axis = Vec3::new(0.0, 27f64.to_radians().cos(), 27f64.to_radians().sin());
+    parts(body, 3.78e-8, axis * (2.9e-11 * 15000.0), substrate, 0.01, frequency)
 }
 
 /// The cuboid on paper at 10 mT.

@@ -2,11 +2,13 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use dynamics::SolverKind;
-use faer::Mat;
-use faer::prelude::Solve;
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
+use faer::linalg::lu::partial_pivoting::{factor, solve};
+use faer::{Mat, Par};
 use geometry::ContactMode;
 use mncp::{Problem, Settings, Solver};
 use nalgebra::{SMatrix, SVector};
+use std::hint::black_box;
 use tumblers_benches::{cuboid_on_paper, in_mode};
 
 /// Kojima and Shindo's problem.
@@ -73,10 +75,28 @@ where
     let entry = |i: usize, j: usize| if i == j { 4.0 } else { ((i * 7 + j * 13) % 11) as f64 / 11.0 - 0.5 };
     let fixed = SMatrix::<f64, N, N>::from_fn(entry);
     let right = SVector::<f64, N>::from_fn(|i, _| 1.0 + i as f64);
-    group.bench_function("nalgebra, fixed size", |bencher| bencher.iter(|| fixed.lu().solve(&right)));
+    group.bench_function("nalgebra, fixed size", |bencher| {
+        bencher.iter(|| black_box(fixed).lu().solve(&black_box(right)))
+    });
     let dynamic = Mat::<f64>::from_fn(N, N, entry);
-    let column = Mat::<f64>::from_fn(N, 1, |i, _| 1.0 + i as f64);
-    group.bench_function("faer", |bencher| bencher.iter(|| dynamic.partial_piv_lu().solve(&column)));
+    let column: Vec<f64> = (0..N).map(|i| 1.0 + i as f64).collect();
+    let (mut factors, mut solution) = (dynamic.clone(), column.clone());
+    let (mut forward, mut inverse) = ([0usize; N], [0usize; N]);
+    let mut scratch = MemBuffer::new(StackReq::any_of(&[
+        factor::lu_in_place_scratch::<usize, f64>(N, N, Par::Seq, Default::default()),
+        solve::solve_in_place_scratch::<usize, f64>(N, 1, Par::Seq),
+    ]));
+    group.bench_function("faer, in place", |bencher| {
+        bencher.iter(|| {
+            let stack = MemStack::new(&mut scratch);
+            factors.copy_from(black_box(&dynamic));
+            solution.copy_from_slice(black_box(&column));
+            let (lu, order) = (factors.as_mut(), Default::default());
+            let (_, rows) = factor::lu_in_place(lu, &mut forward, &mut inverse, Par::Seq, stack, order);
+            let right = faer::MatMut::from_column_major_slice_mut(&mut solution, N, 1);
+            solve::solve_in_place(factors.as_ref(), factors.as_ref(), rows, right, Par::Seq, stack);
+        });
+    });
     group.finish();
 }
 

@@ -5,7 +5,7 @@ use dynamics::{SolverKind, Stepper, Trial};
 use geometry::ContactMode;
 use tumblers_benches::{Shape, cuboid_in_the_air, cuboid_on_paper, in_mode, pdms};
 
-/// One step again and again from the same state; the copy of the state is part of the time.
+/// One step again and again from copies of the same state; making the copy is not part of the time.
 fn by_contact_mode(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("step");
     let cuboid = cuboid_on_paper(5.0);
@@ -19,6 +19,7 @@ fn by_contact_mode(criterion: &mut Criterion) {
     ];
     for (name, trial, mode) in cases {
         let start = in_mode(trial, mode, 0.02);
+        eprintln!("{name}: {} Newton iterations", start.clone().advance().iterations);
         group.bench_function(name, |bencher| {
             bencher.iter_batched_ref(
                 || start.clone(),

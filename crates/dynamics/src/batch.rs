@@ -2,6 +2,7 @@
 //!
 //! Trials share nothing that is written, so that the bits of a result do not depend on the number of threads.
 
+use crate::error::Diverged;
 use crate::metrics::Gauge;
 use crate::{Metrics, SolverKind, Stepper, Trial};
 use rayon::ThreadPoolBuilder;
@@ -16,7 +17,7 @@ const STEPS_BETWEEN_LOOKS: u64 = 64;
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
     Done(Metrics),
-    /// A defect of this library, with its message.
+    /// It left the finite numbers, or met a defect of this library; with the message.
     Failed(String),
     Stopped,
 }
@@ -52,6 +53,9 @@ fn run(trial: &Trial, control: &Control) -> Outcome {
             return Outcome::Stopped;
         }
         stepper.advance();
+        if !stepper.is_finite() {
+            return Outcome::Failed(Diverged { time: stepper.time() }.to_string());
+        }
         gauge.read(&stepper, trial.step());
     }
     Outcome::Done(gauge.metrics())

@@ -17,7 +17,7 @@ pub enum Invalid {
     NotOrthogonal { found: f64 },
     #[error("step_s is {step}, expected less than {bound} s: start_of_step is unstable beyond it")]
     Unstable { step: f64, bound: f64 },
-    #[error("the run of {duration} s has {found} steps, expected at most {limit}")]
+    #[error("the run of {duration:e} s has {found:e} steps, expected at most {limit:e}")]
     TooManySteps { duration: f64, found: f64, limit: f64 },
     #[error("row {row} of the field's table is at {found} s, expected a time after {before} s")]
     TableOrder { row: usize, found: f64, before: f64 },
@@ -25,8 +25,18 @@ pub enum Invalid {
     TableSpan { first: f64, last: f64, needed: f64 },
     #[error("the field's table has {found} rows, expected at least {expected}")]
     TableLength { found: usize, expected: usize },
+    #[error("time_s is {found}, expected a multiple of step_s {step}")]
+    NotAStep { found: f64, step: f64 },
     #[error("position_m puts the body {depth} m into the substrate, expected it on or above the substrate")]
     Buried { depth: f64 },
+}
+
+/// A run whose state has left the finite numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[error("the state is not finite any more at {time} s: the motion diverged")]
+pub struct Diverged {
+    /// s.
+    pub time: f64,
 }
 
 /// The finite `value` named `name`, or why it is refused.

@@ -17,6 +17,7 @@ pub mod general;
 pub mod magnetics;
 pub mod metrics;
 pub mod model;
+pub mod momentum;
 pub mod predictor;
 pub mod problem;
 mod problem_jacobian;

@@ -5,7 +5,7 @@
 //!
 //! ```text
 //! 0 = m (v⁺ - v) - [p_t, p_o, N] - h F_ext
-//! 0 = I (ω⁺ - ω) + h ω × Iω - hT - r × [p_t, p_o, N] - p_r n
+//! 0 = ΔL(ω⁺) - hT - r × [p_t, p_o, N] - p_r n
 //! 0 = a1 - a2 + l_k C_F
 //! 0 = C_F + l_{m+1} n
 //! 0 = μ e_j² p̄ u_j + p_j σ                      j = t, o, r
@@ -201,10 +201,8 @@ impl<'a> StepProblem<'a> {
         let contact = Vec3::new(at.friction.x, at.friction.y, self.at_ecp(at.normal));
         let force = (at.linear - step.state.linear) * step.mass - contact - step.load - step.pull;
         let (torque, _) = step.torque.impulse(&at.angular);
-        let mut moment = step.inertia * (at.angular - step.state.angular) + step.gyroscopic
-            - torque
-            - at.arm.cross(&contact)
-            - step.pull_moment;
+        let (change, _) = step.momentum.change(&step.inertia, &at.angular);
+        let mut moment = change - torque - at.arm.cross(&contact) - step.pull_moment;
         moment.z -= at.friction.z;
 
         let cone = self.normal_cone(z, &at);
@@ -227,6 +225,11 @@ impl<'a> StepProblem<'a> {
         out[plane_slot] = -at.ecp_substrate.z / step.size;
         out[sigma_slot] = bound * bound - z[12] * z[12] - z[13] * z[13] - z[14] * z[14];
         out[normal_slot] = self.greatest(&at).1 / step.size;
+    }
+
+    /// The index of the greatest `f_i(a2)` at `z`.
+    pub fn greatest_surface(&self, z: &[f64]) -> usize {
+        self.greatest(&self.point(z)).0
     }
 
     /// The index and value of `max_i f_i(a2)`.

@@ -38,7 +38,8 @@ impl StepProblem<'_> {
 
         put(0, 0, &Mat3::identity());
         let (_, torque) = step.torque.impulse(&at.angular);
-        put(3, 3, &((step.inertia - torque) / (impulse * step.size * self.angular_scale())));
+        let (_, change) = step.momentum.change(&step.inertia, &at.angular);
+        put(3, 3, &((change - torque) / (impulse * step.size * self.angular_scale())));
         put(3, 6, &contact.cross_matrix());
         put(3, 0, &(-contact.cross_matrix() * travel));
 

@@ -1,5 +1,6 @@
 //! A run, recorded.
 
+use crate::error::Diverged;
 use crate::metrics::Gauge;
 use crate::{Metrics, SolverKind, Stepper, Trial};
 use std::ops::ControlFlow;
@@ -45,6 +46,14 @@ impl Recording {
     }
 }
 
+/// Why a run has no recording.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Ended {
+    /// `watch` stopped it.
+    Stopped,
+    Diverged(Diverged),
+}
+
 /// Runs `trial` and keeps every `every`-th step and the last. `watch` is told the number of steps done and may stop the
 /// run.
 pub fn record(
@@ -52,7 +61,7 @@ pub fn record(
     kind: SolverKind,
     every: u64,
     mut watch: impl FnMut(u64) -> ControlFlow<()>,
-) -> Option<(Recording, Metrics)> {
+) -> Result<(Recording, Metrics), Ended> {
     let (h, steps) = (trial.step(), trial.steps());
     let mut stepper = Stepper::new(trial, kind);
     let mut gauge = Gauge::new(trial);
@@ -61,13 +70,16 @@ pub fn record(
     for done in 1..=steps {
         let adhesion = stepper.adhesion().impulse;
         stepper.advance();
+        if !stepper.is_finite() {
+            return Err(Ended::Diverged(Diverged { time: stepper.time() }));
+        }
         gauge.read(&stepper, h);
         if done % every == 0 || done == steps {
             recording.push(&stepper, h, adhesion);
         }
         if watch(done).is_break() {
-            return None;
+            return Err(Ended::Stopped);
         }
     }
-    Some((recording, gauge.metrics()))
+    Ok((recording, gauge.metrics()))
 }

@@ -3,12 +3,12 @@
 //! Unknowns `x = [ω⁺; p_1..p_k; φ]` with `φ = E⁻¹[p_t, p_o, p_r]`; `v⁺ = v + (h F_ext + [p_t, p_o, N])/m`; `N = Σ p_j`:
 //!
 //! ```text
-//! A:  I^u (ω⁺ - ω) + h ω × I^u ω - hT - Σ p_j y_j × n - r × (p_t, p_o, 0) - p_r n = 0
+//! A:  ΔL(ω⁺) - hT - Σ p_j y_j × n - r × (p_t, p_o, 0) - p_r n = 0
 //! B:  q_z + h v⁺_z + n·y_j = 0                                              j = 1..k
 //! C:  φ - proj_{|·| ≤ μp̄} (φ - ρ E u) = 0
 //! ```
 //!
-//! `r = Σ p_j y_j / N`, and `r_z = -(q_z + h v⁺_z)` because the ECP is on the plane. Without a support only A is left,
+//! `ΔL` is the change of angular momentum ([`crate::momentum`]), `r = Σ p_j y_j / N`, and `r_z = -(q_z + h v⁺_z)` because the ECP is on the plane. Without a support only A is left,
 //! and `-p_a n` acts at the lowest point where adhesion acts at the ECP.
 
 use crate::contact::ContactPoints;
@@ -172,8 +172,9 @@ fn assemble<const N: usize>(
         linear += Vec3::new(p.x, p.y, normal) / step.mass;
     }
     let (torque, torque_by_angular) = step.torque.impulse(&x.angular);
-    let mut moment = step.inertia * (x.angular - step.state.angular) + step.gyroscopic - torque - step.pull_moment;
-    let mut moment_by_angular = step.inertia - torque_by_angular;
+    let (change, change_by_angular) = step.momentum.change(&step.inertia, &x.angular);
+    let mut moment = change - torque - step.pull_moment;
+    let mut moment_by_angular = change_by_angular - torque_by_angular;
 
     let mut rows = SVector::<f64, N>::zeros();
     let mut jacobian = SMatrix::<f64, N, N>::zeros();

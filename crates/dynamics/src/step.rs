@@ -1,6 +1,7 @@
 //! The data of one step: what is known before it is solved.
 
 use crate::magnetics::TorqueLaw;
+use crate::momentum::MomentumLaw;
 use crate::rotation::matrix;
 use crate::{Adhesion, AdhesionActsAt, AdhesionEnters, Mat3, State, Trial, Vec3};
 use geometry::Body;
@@ -49,8 +50,7 @@ pub struct Step<'a> {
     pub state: State,
     /// `h F_ext`.
     pub load: Vec3,
-    /// `h ω × Iω`.
-    pub gyroscopic: Vec3,
+    pub momentum: MomentumLaw,
     pub torque: TorqueLaw,
     /// `E = diag(e_t, e_o, e_r)`.
     pub ellipsoid: Vec3,
@@ -73,7 +73,6 @@ impl<'a> Step<'a> {
         let (h, mass) = (trial.step(), robot.mass());
         let rotation = matrix(&state.orientation);
         let inertia = rotation * robot.inertia() * rotation.transpose();
-        let momentum = inertia * state.angular;
         let model = trial.model();
         let normal = model.adhesion_enters == AdhesionEnters::Normal;
         let at_centroid = normal && model.adhesion_acts_at == AdhesionActsAt::PatchCentroid;
@@ -92,7 +91,7 @@ impl<'a> Step<'a> {
             inertia,
             state: *state,
             load: trial.load() * h,
-            gyroscopic: state.angular.cross(&momentum) * h,
+            momentum: MomentumLaw::new(model.magnetic_torque, &inertia, &state.angular, h),
             torque: TorqueLaw::new(
                 model.magnetic_torque,
                 trial.field(),

@@ -11,8 +11,7 @@ use crate::step::Step;
 use crate::{Adhesion, State, StepSolution, Trial, Vec3};
 use geometry::Support;
 
-/// `h|ω⁺|` beyond which a step does not count as converged: the Cayley map has turned the body by a right angle, and the
-/// gyroscopic term, taken at the start of the step as in the paper, has become unstable.
+/// `h|ω⁺|` beyond which a step does not count as converged: the Cayley map has turned the body by a right angle.
 const MOST_TURN: f64 = 2.0;
 
 /// Which solver a step goes to.
@@ -83,6 +82,13 @@ impl<'a> Stepper<'a> {
 
     pub fn state(&self) -> &State {
         &self.state
+    }
+
+    /// Whether every number of the state is finite.
+    pub fn is_finite(&self) -> bool {
+        let State { position, orientation, linear, angular } = &self.state;
+        let vectors = [position, linear, angular];
+        vectors.iter().all(|v| v.iter().all(|x| x.is_finite())) && orientation.coords.iter().all(|x| x.is_finite())
     }
 
     /// The time that has passed, s.

@@ -128,6 +128,17 @@ impl Trial {
         self.steps
     }
 
+    /// How many steps have been done at `time`.
+    pub fn steps_until(&self, time: f64) -> Result<u64, Invalid> {
+        let h = self.parts.step;
+        let done = (time / h).round();
+        if done >= 0.0 && (done * h - time).abs() <= 1e-9 * h.max(time) {
+            Ok(done as u64)
+        } else {
+            Err(Invalid::NotAStep { found: time, step: h })
+        }
+    }
+
     /// `F_ext`, N.
     pub fn load(&self) -> Vec3 {
         self.load

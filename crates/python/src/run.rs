@@ -3,14 +3,15 @@
 use crate::convert::{refused, solver, table};
 use crate::trial::PyTrial;
 use dynamics::batch::{Control, Outcome, sweep as run_batch};
-use dynamics::recording::record;
+use dynamics::recording::{Ended, record};
 use dynamics::{Metrics, Trial};
 use numpy::IntoPyArray;
-use pyo3::exceptions::PyKeyboardInterrupt;
+use pyo3::exceptions::{PyArithmeticError, PyKeyboardInterrupt};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::ops::ControlFlow;
 use std::sync::atomic::Ordering;
+use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
 /// How often a run looks for Ctrl-C and reports its progress.
@@ -48,9 +49,10 @@ pub fn simulate<'py>(
             }
         })
     });
-    let Some((recording, metrics)) = recorded else {
-        return Err(interrupted.unwrap_or_else(|| PyKeyboardInterrupt::new_err(())));
-    };
+    let (recording, metrics) = recorded.map_err(|ended| match ended {
+        Ended::Stopped => interrupted.unwrap_or_else(|| PyKeyboardInterrupt::new_err(())),
+        Ended::Diverged(diverged) => PyArithmeticError::new_err(diverged.to_string()),
+    })?;
     report(py, on_progress.as_ref(), trial.0.steps())?;
     let out = PyDict::new(py);
     out.set_item("position_m", table(py, &recording.position)?)?;
@@ -86,20 +88,21 @@ pub fn sweep<'py>(
     let trials: Vec<Trial> = trials.iter().map(|trial| trial.0.clone()).collect();
     let control = Control::default();
     let outcomes = py.detach(|| {
+        let (done, outcomes) = mpsc::channel();
         std::thread::scope(|scope| {
-            let batch = scope.spawn(|| run_batch(&trials, threads, &control));
-            let mut interrupted = None;
-            while !batch.is_finished() {
-                std::thread::park_timeout(LOOK);
-                let finished = control.finished.load(Ordering::Relaxed);
-                if let Err(error) = Python::attach(|py| report(py, on_progress.as_ref(), finished as u64)) {
+            scope.spawn(|| done.send(run_batch(&trials, threads, &control)));
+            loop {
+                match outcomes.recv_timeout(LOOK) {
+                    Ok(outcomes) => return outcomes.map_err(refused),
+                    Err(RecvTimeoutError::Disconnected) => return Err(refused("the batch ended without outcomes")),
+                    Err(RecvTimeoutError::Timeout) => {}
+                }
+                let finished = control.finished.load(Ordering::Relaxed) as u64;
+                if let Err(error) = Python::attach(|py| report(py, on_progress.as_ref(), finished)) {
                     control.stop.store(true, Ordering::Relaxed);
-                    interrupted = Some(error);
-                    break;
+                    return Err(error);
                 }
             }
-            let outcomes = batch.join().map_err(|_| refused("the batch panicked outside its trials"))?;
-            interrupted.map_or_else(|| outcomes.map_err(refused), Err)
         })
     })?;
     report(py, on_progress.as_ref(), trials.len() as u64)?;

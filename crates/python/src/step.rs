@@ -25,10 +25,7 @@ pub fn step<'py>(
     solver: &str,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (kind, h) = (self::solver(solver)?, trial.0.step());
-    let done = (time_s / h).round();
-    if !(done >= 0.0 && (done * h - time_s).abs() <= 1e-9 * h.max(time_s)) {
-        return Err(refused(format!("time_s is {time_s}, expected a multiple of step_s {h}")));
-    }
+    let done = trial.0.steps_until(time_s).map_err(refused)?;
     let state = State {
         position: position_m.into(),
         orientation: quaternion(orientation),
@@ -36,7 +33,7 @@ pub fn step<'py>(
         angular: angular_velocity_rad_per_s.into(),
     };
     let adhesion = Adhesion { impulse: adhesion_force_N * h, centroid: patch_centroid_m.into() };
-    let mut stepper = Stepper::from_state(&trial.0, kind, state, done as u64, adhesion, Support::None);
+    let mut stepper = Stepper::from_state(&trial.0, kind, state, done, adhesion, Support::None);
     let solution = stepper.advance().clone();
     let out = PyDict::new(py);
     out.set_item("linear_velocity_m_per_s", vector(py, solution.linear))?;

@@ -23,6 +23,7 @@ from .array import Array
 from .friction import bound_impulse, fritz_john, slack, slip
 from .magnetics import step_torque
 from .parameters import State, Trial
+from .momentum import final_momentum, known_momentum
 from .rotation import cayley, cross
 
 NORMAL = np.array([0.0, 0.0, 1.0])
@@ -95,9 +96,8 @@ class StepProblem:
         omega = state.angular_velocity
         self.torque = step_torque(trial.torque_time, trial.moment, self.rotation, omega, trial.field, time, trial.step)
         self.spin = self.inertia @ omega
-        gyroscopic = self.h * cross(omega, self.spin)
         linear = self.mass * state.velocity + self.h * self.force
-        angular = self.spin - gyroscopic
+        angular = known_momentum(trial.torque_time, self.inertia, omega, self.h)
         self.adhesion_at_ecp = trial.adhesion_enters == "normal" and trial.adhesion_acts_at == "ecp"
         if trial.adhesion_enters == "normal" and trial.adhesion_acts_at == "patch_centroid" and self.p_a > 0.0:
             if patch_centroid is None:
@@ -108,6 +108,10 @@ class StepProblem:
             raise ValueError(f"adhesion_acts_at: found {trial.adhesion_acts_at!r}, expected ecp or patch_centroid")
         # What the momentum would be after the step without contact and magnetic torque.
         self.linear, self.angular = linear, angular
+
+    def angular_momentum(self, omega: Array) -> Array:
+        """What the momentum rows count of `ω⁺` [N m s]."""
+        return final_momentum(self.trial.torque_time, self.inertia, omega, self.h)
 
     def normal_impulse(self, p_n: float) -> float:
         """`N`, the normal impulse at `a1` [N s]."""
@@ -127,7 +131,7 @@ class StepProblem:
         moment = cross(r, impulse)
         moment[2] += p[2]
         linear = self.mass * V[:3] - self.linear - impulse
-        angular = self.inertia @ V[3:] - self.angular - self.h * self.torque(V[3:]) - moment
+        angular = self.angular_momentum(V[3:]) - self.angular - self.h * self.torque(V[3:]) - moment
         return np.concatenate([linear, angular])
 
     def surface_rows(self, V: Array, point: Array) -> tuple[Array, Array]:

@@ -37,6 +37,11 @@ def cayley(s: Array) -> Array:
     )
 
 
+def half_cayley(s: Array) -> Array:
+    """Rotation matrix, shape (3, 3), of half the angle of `C(s)` about the same axis."""
+    return cayley(s / (1.0 + math.sqrt(1.0 + float(s @ s))))
+
+
 def cayley_vector(rotation: Array) -> Array:
     """`s`, shape (3,), with `C(s) = rotation`; the inverse of `cayley` for angles below π."""
     w = 1.0 + float(np.trace(rotation))
