@@ -13,6 +13,7 @@ pub struct Adhesion {
 }
 
 impl Adhesion {
+    /// No adhesion: the last step ended in the air.
     pub fn none() -> Self {
         Self { impulse: 0.0, centroid: Vec3::zeros() }
     }

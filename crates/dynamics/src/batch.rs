@@ -16,16 +16,20 @@ const STEPS_BETWEEN_LOOKS: u64 = 64;
 /// What became of one trial of a batch.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
+    /// It ran to its end.
     Done(Metrics),
     /// It left the finite numbers, or met a defect of this library; with the message.
     Failed(String),
+    /// The batch was stopped before its end.
     Stopped,
 }
 
 /// How a batch is watched and stopped from another thread.
 #[derive(Debug, Default)]
 pub struct Control {
+    /// Set from another thread to stop the batch.
     pub stop: AtomicBool,
+    /// How many trials have ended.
     pub finished: AtomicUsize,
 }
 

@@ -6,7 +6,9 @@ use geometry::{Body, Support};
 /// Points `y_j = R⁺ s_j` relative to the centre of mass, in the substrate frame.
 #[derive(Debug, Clone, Copy)]
 pub struct ContactPoints {
+    /// How many points there are, at most three.
     pub count: usize,
+    /// `y_j`, m.
     pub y: [Vec3; 3],
     /// `dy_j/dφ`.
     pub turn: [Mat3; 3],

@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 /// A quantity that a trial cannot be built from.
+#[allow(missing_docs)] // the messages say what each is
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum Invalid {
     #[error("{name} is {found}, expected a finite number")]

@@ -1,25 +1,16 @@
-//! Which support a step ends on: solve for one, see what is violated, exchange it for a neighbour.
+//! Which support a step ends on: solve for one, see what is violated ([`crate::judgement`]), exchange it for a neighbour.
 //!
-//! A support is right when
-//!
-//! ```text
-//! p_n ≥ 0,    the ECP lies inside the support,    n·y ≥ -q⁺_z for every point of the body.
-//! ```
-//!
-//! These are the inequalities of the unreduced problem's complementarity pairs. Exchanging one violated pair at a time is
-//! principal pivoting (Murty 1974); where it cycles, every support is tried in turn.
+//! Exchanging one violated pair at a time is principal pivoting (Murty 1974); where it cycles, every support is tried in
+//! turn.
 
 use crate::Vec3;
-use crate::contact::{ContactPoints, downward};
+use crate::contact::downward;
+use crate::judgement::{INSIDE, Verdict, judge};
 use crate::predictor::{closest_contact, contact, other_starts};
 use crate::reduced::{Evaluation, Reduced, Unknowns, solve};
 use crate::step::Step;
-use geometry::{Body, Generator, Support};
+use geometry::{Generator, Support};
 
-/// How far, over `ℓ`, a point may be below the plane or outside its support: rounding, not physics.
-const INSIDE: f64 = 1e-12;
-/// How negative, over `P`, `p_n` may be.
-const NO_PULL: f64 = 1e-13;
 const MAX_EXCHANGES: usize = 24;
 /// The tilt (rad) from which a body is taken onto a curved rim.
 const RIM_TILT: f64 = 1e-5;
@@ -27,23 +18,23 @@ const RIM_TILT: f64 = 1e-5;
 /// Where a step starts its search: the support and the unknowns of the step before.
 #[derive(Debug, Clone, Copy)]
 pub struct Warm {
+    /// What touched.
     pub support: Support,
+    /// Its solution.
     pub unknowns: Unknowns,
 }
 
 /// The support that was found and its solution.
 #[derive(Debug, Clone, Copy)]
 pub struct Found {
+    /// What touches after the step.
     pub support: Support,
+    /// The reduced solution.
     pub at: Evaluation,
+    /// Newton iterations over all supports that were tried.
     pub iterations: u32,
     /// Whether every condition holds.
     pub right: bool,
-}
-
-enum Verdict {
-    Right,
-    Exchange(Support),
 }
 
 /// What is asked of the contact on a support.
@@ -88,6 +79,23 @@ fn exchange(step: &Step, warm: &Warm, wanted: Wanted, iterations: &mut u32) -> F
         }
         match judge(step, support, &reduced.at) {
             Verdict::Right => return Found { right: true, ..found },
+            // The face is the better name for the same contact, unless the ECP is beyond it.
+            Verdict::Flat(face) => {
+                let flat = solve_support(
+                    step,
+                    Support::Face(face),
+                    &fresh_start(step, Support::Face(face), &reduced.at),
+                    &warm.support,
+                    wanted,
+                );
+                *iterations += flat.iterations;
+                let fits = flat.converged && matches!(judge(step, Support::Face(face), &flat.at), Verdict::Right);
+                return if fits {
+                    Found { support: Support::Face(face), at: flat.at, iterations: *iterations, right: true }
+                } else {
+                    Found { right: true, ..found }
+                };
+            }
             Verdict::Exchange(next) => {
                 if tried == MAX_EXCHANGES || visited[..tried].contains(&next) {
                     return found;
@@ -115,7 +123,8 @@ fn try_all(step: &Step, warm: &Warm, wanted: Wanted, iterations: &mut u32) -> Op
         let mut attempt = |start: &Unknowns| {
             let reduced = solve_support(step, support, start, &warm.support, wanted);
             *iterations += reduced.iterations;
-            let right = reduced.converged && matches!(judge(step, support, &reduced.at), Verdict::Right);
+            let right =
+                reduced.converged && matches!(judge(step, support, &reduced.at), Verdict::Right | Verdict::Flat(_));
             right.then_some(Found { support, at: reduced.at, iterations: *iterations, right })
         };
         let found = attempt(&moving).or_else(|| attempt(&still)).or_else(|| match support {
@@ -202,77 +211,4 @@ fn tilt_onto(step: &Step, rim: u16, at: &Evaluation) -> Vec3 {
     outward.z = 0.0;
     let length = outward.norm();
     if length > 0.0 { Vec3::z().cross(&outward) * (RIM_TILT / (length * step.h)) } else { Vec3::zeros() }
-}
-
-/// Holds `support`'s solution against the conditions, and names the exchange where one fails.
-fn judge(step: &Step, support: Support, at: &Evaluation) -> Verdict {
-    let body = step.body;
-    let slack = INSIDE * step.size;
-    if support != Support::None {
-        let pull = -step.normal_impulse(at.normal);
-        if pull > NO_PULL * step.load_scale() {
-            return Verdict::Exchange(Support::None);
-        }
-        if let Some(next) = left_support(body, support, at, slack) {
-            return Verdict::Exchange(next);
-        }
-    }
-    match deepest(body, at) {
-        Some((generator, depth)) if depth > slack => Verdict::Exchange(extended(body, support, generator, at)),
-        _ => Verdict::Right,
-    }
-}
-
-/// The neighbour that the ECP has moved to, if it has left `support` by more than `slack`.
-fn left_support(body: &Body, support: Support, at: &Evaluation, slack: f64) -> Option<Support> {
-    match support {
-        Support::None | Support::Point(_) => None,
-        Support::Line(g, h) => {
-            let points = ContactPoints::new(body, support, &at.rotation);
-            let length = (points.y[1] - points.y[0]).norm();
-            let share = at.unknowns.impulses[0] / at.normal;
-            if share * length < -slack {
-                Some(Support::Point(h))
-            } else if (share - 1.0) * length > slack {
-                Some(Support::Point(g))
-            } else {
-                None
-            }
-        }
-        Support::Face(face) => {
-            let point = at.rotation.transpose() * at.arm;
-            let mut worst = (slack, None);
-            for (surface, next) in &body.faces()[face as usize].neighbours {
-                let outside = body.surfaces()[*surface as usize].value(&point);
-                if outside > worst.0 {
-                    worst = (outside, Some(*next));
-                }
-            }
-            worst.1
-        }
-    }
-}
-
-/// The generator that is deepest below the plane.
-fn deepest(body: &Body, at: &Evaluation) -> Option<(u16, f64)> {
-    let (generator, point) = body.lowest(&downward(&at.rotation));
-    let depth = -(at.height + (at.rotation * point).z);
-    depth.is_finite().then_some((generator, depth))
-}
-
-/// `support` with the penetrating `generator` added, or what is left of it where the two share no feature.
-fn extended(body: &Body, support: Support, generator: u16, at: &Evaluation) -> Support {
-    let line = |g: u16, h: u16| if g < h { Support::Line(g, h) } else { Support::Line(h, g) };
-    match support {
-        Support::None | Support::Face(_) => Support::Point(generator),
-        Support::Point(g) if g == generator => Support::Point(g),
-        Support::Point(g) => line(g, generator),
-        Support::Line(g, h) => match body.face_through(g, h, generator) {
-            Some(face) => Support::Face(face),
-            None => {
-                let keep = if at.unknowns.impulses[0].abs() >= at.unknowns.impulses[1].abs() { g } else { h };
-                if keep == generator { Support::Point(generator) } else { line(keep, generator) }
-            }
-        },
-    }
 }

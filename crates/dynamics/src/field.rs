@@ -10,6 +10,7 @@ const RIGHT_ANGLE: f64 = 1e-6;
 
 /// A uniform field that varies with time.
 #[derive(Debug, Clone)]
+#[allow(missing_docs)] // the formulas say what each field is
 pub enum Field {
     /// `B(t) = B [b0 cos ωt + (a × b0) sin ωt]`.
     Rotating { strength: f64, frequency: f64, initial: Vec3, quadrature: Vec3 },

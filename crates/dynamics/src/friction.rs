@@ -10,8 +10,11 @@ use crate::{Mat3, Vec3};
 pub struct FrictionRows {
     /// `φ - proj_b(φ - ρν)`.
     pub value: Vec3,
+    /// By `φ`.
     pub by_friction: Mat3,
+    /// By `ν`.
     pub by_slip: Mat3,
+    /// By `b`.
     pub by_bound: Vec3,
     /// Whether `φ - ρν` lies outside the ball, so that the contact slips.
     pub slips: bool,

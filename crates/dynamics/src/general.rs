@@ -54,6 +54,7 @@ impl Clone for General {
 }
 
 impl General {
+    /// The solver for the steps of `body`.
     pub fn new(body: &Body) -> Self {
         Self::with(StepSolution::for_body(body))
     }
@@ -132,12 +133,23 @@ fn start_on(step: &Step, support: Support, touching: bool, solution: &mut StepSo
     solution.linear = if touching { step.state.linear } else { step.state.linear + step.load / step.mass };
     solution.angular = step.state.angular;
     solution.ecp = ecp;
-    solution.friction = Vec3::zeros();
-    solution.sigma = 0.0;
     solution.normal = if touching { step.normal_impulse(step.load.z.abs()) } else { 0.0 };
+    set_friction(step, &arm, solution);
     let rotation = step.rotation;
     set_normal_cone(body, support, &(rotation.transpose() * arm), &down, solution);
     solution.ecp_substrate = Vec3::new(ecp.x, ecp.y, 0.0);
+}
+
+/// The friction of the start: `p = -μp̄ E²u/σ`, `σ = |Eu|`, for the slip of the step before.
+fn set_friction(step: &Step, arm: &Vec3, solution: &mut StepSolution) {
+    let surface = step.state.linear + step.state.angular.cross(arm);
+    let slip = step.ellipsoid.component_mul(&Vec3::new(surface.x, surface.y, step.state.angular.z));
+    let bound = step.friction.of(step.bound_impulse(solution.normal));
+    let sigma = slip.norm();
+    // Below rounding of the speeds the contact sticks.
+    let slips = sigma > 1e-9 * (solution.linear.norm() + step.size * solution.angular.norm());
+    solution.sigma = if slips { sigma } else { 0.0 };
+    solution.friction = if slips { step.ellipsoid.component_mul(&slip) * (-bound / sigma) } else { Vec3::zeros() };
 }
 
 /// What touches in a solution of the unreduced problem.

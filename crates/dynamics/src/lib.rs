@@ -5,6 +5,7 @@
 //! problem, and [`stepper`] advances the state.
 
 #![forbid(unsafe_code)]
+#![deny(missing_docs)]
 
 pub mod adhesion;
 pub mod batch;
@@ -14,6 +15,7 @@ pub mod exchange;
 pub mod field;
 pub mod friction;
 pub mod general;
+pub mod judgement;
 pub mod magnetics;
 pub mod metrics;
 pub mod model;

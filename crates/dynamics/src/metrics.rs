@@ -13,11 +13,13 @@ pub struct Metrics {
     pub drift: f64,
     /// Displacement along `y` over the run's time, m/s.
     pub speed: f64,
+    /// Steps that did not converge.
     pub unconverged_steps: u64,
     /// Greatest scaled natural residual of a step.
     pub max_residual: f64,
     /// Greatest penetration, m.
     pub max_penetration: f64,
+    /// Of the whole run.
     pub newton_iterations: u64,
 }
 
@@ -31,6 +33,7 @@ pub struct Gauge {
 }
 
 impl Gauge {
+    /// A gauge at the start of `trial`.
     pub fn new(trial: &Trial) -> Self {
         let initial = *trial.initial();
         let metrics = Metrics {
@@ -65,6 +68,7 @@ impl Gauge {
         self.before = *state;
     }
 
+    /// What has been gathered so far.
     pub fn metrics(&self) -> Metrics {
         self.metrics
     }

@@ -32,7 +32,10 @@ pub enum AdhesionEnters {
 /// The model's switches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Model {
+    /// When the torque is taken.
     pub magnetic_torque: MagneticTorque,
+    /// Where adhesion acts.
     pub adhesion_acts_at: AdhesionActsAt,
+    /// What adhesion enters.
     pub adhesion_enters: AdhesionEnters,
 }

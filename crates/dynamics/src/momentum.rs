@@ -14,6 +14,7 @@ use crate::{MagneticTorque, Mat3, Vec3};
 
 /// The change of angular momentum as a function of `ω⁺`.
 #[derive(Debug, Clone, Copy)]
+#[allow(missing_docs)] // the formulas say what each field is
 pub enum MomentumLaw {
     /// `I^u ω⁺ - k`.
     Explicit { known: Vec3 },

@@ -36,7 +36,9 @@ pub(crate) const ACTIVE: usize = FREE - 1;
 /// The unreduced problem of a step for the active index `k`.
 #[derive(Debug, Clone, Copy)]
 pub struct StepProblem<'a> {
+    /// The data of the step.
     pub step: &'a Step<'a>,
+    /// `k`.
     pub active: usize,
 }
 
@@ -56,6 +58,7 @@ pub(crate) struct Point {
 }
 
 impl<'a> StepProblem<'a> {
+    /// The problem of `step` for the active index `active`.
     pub fn new(step: &'a Step<'a>, active: usize) -> Self {
         Self { step, active }
     }

@@ -8,20 +8,31 @@ use std::ops::ControlFlow;
 /// The rows of a run: every `every`-th step, and the start.
 #[derive(Debug, Clone, Default)]
 pub struct Recording {
+    /// s.
     pub time: Vec<f64>,
+    /// Centre of mass, m.
     pub position: Vec<[f64; 3]>,
     /// `w, x, y, z`.
     pub orientation: Vec<[f64; 4]>,
+    /// `v`, m/s.
     pub linear: Vec<[f64; 3]>,
+    /// `ω`, rad/s.
     pub angular: Vec<[f64; 3]>,
+    /// `a1`, m.
     pub ecp: Vec<[f64; 3]>,
+    /// 0 airborne, 1 point, 2 line, 3 surface.
     pub contact_mode: Vec<i8>,
+    /// `λ_n`, N.
     pub normal_force: Vec<f64>,
     /// `λ_t`, `λ_o` (N) and `λ_r` (N m).
     pub friction_force: Vec<[f64; 3]>,
+    /// `λ_a`, N.
     pub adhesion_force: Vec<f64>,
+    /// Speed of the ECP along the substrate, m/s.
     pub slip_speed: Vec<f64>,
+    /// Scaled natural residual.
     pub residual: Vec<f64>,
+    /// Of the step.
     pub newton_iterations: Vec<i64>,
 }
 
@@ -51,6 +62,7 @@ impl Recording {
 pub enum Ended {
     /// `watch` stopped it.
     Stopped,
+    /// The state left the finite numbers.
     Diverged(Diverged),
 }
 

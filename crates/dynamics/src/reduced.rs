@@ -31,7 +31,9 @@ const NO_FORCE: f64 = 1e-14;
 /// The unknowns of the reduced problem.
 #[derive(Debug, Clone, Copy)]
 pub struct Unknowns {
+    /// `ω⁺`, rad/s.
     pub angular: Vec3,
+    /// `p_j`, N s.
     pub impulses: [f64; 3],
     /// `φ = E⁻¹[p_t, p_o, p_r]`.
     pub friction: Vec3,
@@ -40,7 +42,9 @@ pub struct Unknowns {
 /// A point of the reduced problem with all that follows from its unknowns.
 #[derive(Debug, Clone, Copy)]
 pub struct Evaluation {
+    /// `x`.
     pub unknowns: Unknowns,
+    /// `v⁺`, m/s.
     pub linear: Vec3,
     /// `R⁺`.
     pub rotation: Mat3,
@@ -52,6 +56,7 @@ pub struct Evaluation {
     pub arm: Vec3,
     /// `u`.
     pub slip: Vec3,
+    /// Whether the contact slips.
     pub slips: bool,
     /// Greatest scaled row.
     pub error: f64,
@@ -60,8 +65,11 @@ pub struct Evaluation {
 /// The solution for one support.
 #[derive(Debug, Clone, Copy)]
 pub struct Reduced {
+    /// Where Newton ended.
     pub at: Evaluation,
+    /// Newton steps.
     pub iterations: u32,
+    /// Whether every scaled row is down to rounding.
     pub converged: bool,
 }
 
@@ -128,6 +136,7 @@ impl<const N: usize> Scales<N> {
 }
 
 impl Unknowns {
+    /// All zero.
     pub fn at_rest() -> Self {
         Self { angular: Vec3::zeros(), impulses: [0.0; 3], friction: Vec3::zeros() }
     }

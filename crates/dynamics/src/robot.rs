@@ -25,6 +25,7 @@ impl Robot {
         Ok(Self { body, mass, inertia, moment })
     }
 
+    /// The shape.
     pub fn body(&self) -> &Body {
         &self.body
     }

@@ -7,10 +7,13 @@ use geometry::{Body, Patch, Support};
 /// `[V⁺; a1; a2; p_t; p_o; p_r]`, `[l; l_{m+1}; σ; p_n]` and what follows from them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StepSolution {
+    /// `v⁺`, m/s.
     pub linear: Vec3,
+    /// `ω⁺`, rad/s.
     pub angular: Vec3,
     /// `a1`, `a2`: the equivalent contact point on the body and on the substrate, m.
     pub ecp: Vec3,
+    /// `a2`, m.
     pub ecp_substrate: Vec3,
     /// `p_t`, `p_o` (N s) and `p_r` (N m s).
     pub friction: Vec3,
@@ -26,7 +29,9 @@ pub struct StepSolution {
     pub active: usize,
     /// `[W_t W_o W_r]ᵀV⁺`.
     pub slip: Vec3,
+    /// What touches after the step.
     pub support: Support,
+    /// How much of the real body that is.
     pub patch: Patch,
     /// The scaled natural residual of the unreduced problem.
     pub residual: f64,
@@ -34,6 +39,7 @@ pub struct StepSolution {
     pub penetration: f64,
     /// Newton iterations, over all supports that were tried.
     pub iterations: u32,
+    /// Whether the residual is small enough and the turn resolved.
     pub converged: bool,
 }
 

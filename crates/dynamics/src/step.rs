@@ -38,8 +38,11 @@ impl FrictionBound {
 /// Everything that the step from `u` to `u+1` depends on.
 #[derive(Debug, Clone, Copy)]
 pub struct Step<'a> {
+    /// The shape.
     pub body: &'a Body,
+    /// s.
     pub h: f64,
+    /// kg.
     pub mass: f64,
     /// `ℓ`, the scale of lengths.
     pub size: f64,
@@ -47,13 +50,17 @@ pub struct Step<'a> {
     pub rotation: Mat3,
     /// `I^u` in the substrate frame.
     pub inertia: Mat3,
+    /// At the start of the step.
     pub state: State,
     /// `h F_ext`.
     pub load: Vec3,
+    /// The change of angular momentum.
     pub momentum: MomentumLaw,
+    /// The magnetic torque.
     pub torque: TorqueLaw,
     /// `E = diag(e_t, e_o, e_r)`.
     pub ellipsoid: Vec3,
+    /// The radius of the friction ball.
     pub friction: FrictionBound,
     /// `p_a`.
     pub adhesion: f64,
@@ -63,6 +70,7 @@ pub struct Step<'a> {
     pub raises_bound: bool,
     /// The impulse and moment of `p_a` at the centroid, zero where it acts at the ECP.
     pub pull: Vec3,
+    /// N m s.
     pub pull_moment: Vec3,
 }
 

@@ -80,6 +80,7 @@ impl<'a> Stepper<'a> {
         Self { kind, ..self }
     }
 
+    /// The state after the last step.
     pub fn state(&self) -> &State {
         &self.state
     }

@@ -1,7 +1,7 @@
 //! One trial: a robot on a substrate in a field, for a time.
 
 use crate::contact::downward;
-use crate::error::{Invalid, direction, finite, not_negative, positive};
+use crate::error::{Invalid, finite, not_negative, positive};
 use crate::rotation::matrix;
 use crate::{Field, MagneticTorque, Model, Robot, State, Substrate, Vec3};
 use geometry::Support;
@@ -15,9 +15,13 @@ const MOST_STEPS: f64 = 1e9;
 /// What a trial is made of.
 #[derive(Debug, Clone)]
 pub struct TrialParts {
+    /// What moves.
     pub robot: Robot,
+    /// What it moves on.
     pub substrate: Substrate,
+    /// What moves it.
     pub field: Field,
+    /// The choices that the paper leaves open.
     pub model: Model,
     /// `φ`, rad.
     pub incline: f64,
@@ -31,7 +35,9 @@ pub struct TrialParts {
     pub position: Option<Vec3>,
     /// Body to substrate.
     pub orientation: Quaternion<f64>,
+    /// `v` at the start, m/s.
     pub linear: Vec3,
+    /// `ω` at the start, rad/s.
     pub angular: Vec3,
 }
 
@@ -46,6 +52,7 @@ pub struct Trial {
 }
 
 impl Trial {
+    /// A trial of `parts`, or the first thing about them that is refused.
     pub fn new(parts: TrialParts) -> Result<Self, Invalid> {
         parts.substrate.checked()?;
         finite("incline_deg", parts.incline)?;
@@ -59,7 +66,7 @@ impl Trial {
         for component in q.coords.iter() {
             finite("orientation", *component)?;
         }
-        direction("orientation", q.imag() + Vec3::new(q.w.abs(), 0.0, 0.0))?;
+        positive("length of orientation", q.norm())?;
 
         // The run covers its duration in whole steps; a rounding beyond the end is not another step.
         let found = (parts.duration / parts.step - 1e-9).ceil().max(1.0);
@@ -102,18 +109,22 @@ impl Trial {
         Ok(Self { parts, initial, support, load, steps: found as u64 })
     }
 
+    /// What moves.
     pub fn robot(&self) -> &Robot {
         &self.parts.robot
     }
 
+    /// What it moves on.
     pub fn substrate(&self) -> &Substrate {
         &self.parts.substrate
     }
 
+    /// What moves it.
     pub fn field(&self) -> &Field {
         &self.parts.field
     }
 
+    /// The choices that the paper leaves open.
     pub fn model(&self) -> Model {
         self.parts.model
     }
@@ -144,6 +155,7 @@ impl Trial {
         self.load
     }
 
+    /// The state at the start.
     pub fn initial(&self) -> &State {
         &self.initial
     }

@@ -1,0 +1,119 @@
+//! Whether a support is right, and what it is exchanged for where it is not.
+//!
+//! A support is right when
+//!
+//! ```text
+//! p_n ≥ 0,    the ECP lies inside the support,    n·y ≥ -q⁺_z for every point of the body.
+//! ```
+//!
+//! These are the inequalities of the unreduced problem's complementarity pairs.
+
+use crate::contact::{ContactPoints, downward};
+use crate::reduced::Evaluation;
+use crate::step::Step;
+use geometry::{Body, Support};
+
+/// How far, over `ℓ`, a point may be below the plane or outside its support: rounding, not physics.
+pub const INSIDE: f64 = 1e-12;
+/// How negative, over `P`, `p_n` may be.
+const NO_PULL: f64 = 1e-13;
+
+/// What becomes of a support.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// Every condition holds.
+    Right,
+    /// Right, but for a face that lies flat beside it.
+    Flat(u16),
+    /// A condition fails, and names the support to try next.
+    Exchange(Support),
+}
+
+/// Holds `support`'s solution against the conditions, and names the exchange where one fails.
+pub fn judge(step: &Step, support: Support, at: &Evaluation) -> Verdict {
+    let body = step.body;
+    let slack = INSIDE * step.size;
+    if support != Support::None {
+        let pull = -step.normal_impulse(at.normal);
+        if pull > NO_PULL * step.load_scale() {
+            return Verdict::Exchange(Support::None);
+        }
+        if let Some(next) = left_support(body, support, at, slack) {
+            return Verdict::Exchange(next);
+        }
+    }
+    match deepest(body, at) {
+        Some((generator, depth)) if depth > slack => Verdict::Exchange(extended(body, support, generator, at)),
+        _ => flat_face(body, support, at, slack).map_or(Verdict::Right, Verdict::Flat),
+    }
+}
+
+/// The face on which a body lies flat, to rounding, that was taken for a point or a line: after a level landing, say, or a
+/// line between two corners of a face that no edge joins.
+fn flat_face(body: &Body, support: Support, at: &Evaluation, slack: f64) -> Option<u16> {
+    let (one, other) = match support {
+        Support::None | Support::Face(_) => return None,
+        Support::Point(g) => (g, g),
+        Support::Line(g, h) => (g, h),
+    };
+    let lies = |face: &&u16| {
+        let anchors = &body.faces()[**face as usize].anchors;
+        body.face_touches(**face, other)
+            && anchors.iter().all(|anchor| (at.height + (at.rotation * anchor).z).abs() <= slack)
+    };
+    body.faces_of(one).iter().find(lies).copied()
+}
+
+/// The neighbour that the ECP has moved to, if it has left `support` by more than `slack`.
+fn left_support(body: &Body, support: Support, at: &Evaluation, slack: f64) -> Option<Support> {
+    match support {
+        Support::None | Support::Point(_) => None,
+        Support::Line(g, h) => {
+            let points = ContactPoints::new(body, support, &at.rotation);
+            let length = (points.y[1] - points.y[0]).norm();
+            let share = at.unknowns.impulses[0] / at.normal;
+            if share * length < -slack {
+                Some(Support::Point(h))
+            } else if (share - 1.0) * length > slack {
+                Some(Support::Point(g))
+            } else {
+                None
+            }
+        }
+        Support::Face(face) => {
+            let point = at.rotation.transpose() * at.arm;
+            let mut worst = (slack, None);
+            for (surface, next) in &body.faces()[face as usize].neighbours {
+                let outside = body.surfaces()[*surface as usize].value(&point);
+                if outside > worst.0 {
+                    worst = (outside, Some(*next));
+                }
+            }
+            worst.1
+        }
+    }
+}
+
+/// The generator that is deepest below the plane.
+fn deepest(body: &Body, at: &Evaluation) -> Option<(u16, f64)> {
+    let (generator, point) = body.lowest(&downward(&at.rotation));
+    let depth = -(at.height + (at.rotation * point).z);
+    depth.is_finite().then_some((generator, depth))
+}
+
+/// `support` with the penetrating `generator` added, or what is left of it where the two share no feature.
+fn extended(body: &Body, support: Support, generator: u16, at: &Evaluation) -> Support {
+    let line = |g: u16, h: u16| if g < h { Support::Line(g, h) } else { Support::Line(h, g) };
+    match support {
+        Support::None | Support::Face(_) => Support::Point(generator),
+        Support::Point(g) if g == generator => Support::Point(g),
+        Support::Point(g) => line(g, generator),
+        Support::Line(g, h) => match body.face_through(g, h, generator) {
+            Some(face) => Support::Face(face),
+            None => {
+                let keep = if at.unknowns.impulses[0].abs() >= at.unknowns.impulses[1].abs() { g } else { h };
+                if keep == generator { Support::Point(generator) } else { line(keep, generator) }
+            }
+        },
+    }
+}
