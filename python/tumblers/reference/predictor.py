@@ -42,7 +42,9 @@ def free_motion(problem: StepProblem) -> Array:
 
     def rows(x: Array) -> Array:
         omega = x * unit
-        return np.asarray((problem.angular_momentum(omega) - problem.angular - problem.h * problem.torque(omega)) / scale)
+        return np.asarray(
+            (problem.angular_momentum(omega) - problem.angular - problem.h * problem.torque(omega)) / scale
+        )
 
     first = problem.state.angular_velocity / unit
     kick = np.linalg.solve(problem.inertia, problem.h * problem.torque(problem.state.angular_velocity)) / unit

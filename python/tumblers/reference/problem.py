@@ -22,8 +22,8 @@ import numpy as np
 from .array import Array
 from .friction import bound_impulse, fritz_john, slack, slip
 from .magnetics import step_torque
-from .parameters import State, Trial
 from .momentum import final_momentum, known_momentum
+from .parameters import State, Trial
 from .rotation import cayley, cross
 
 NORMAL = np.array([0.0, 0.0, 1.0])

@@ -5,7 +5,7 @@ Equations::
     P = m|v| + |Iω|/ℓ + h|F_ext| + h|T|/ℓ + p_a + |N| + |p_t| + |p_o|
     U = |v⁺| + ℓ|ω⁺| + P/m
 
-Momentum rows over `P` and `Pℓ`, `a1 - a2 + l_k C_F` over `ℓ`, `C_F + C_G` over `l_plane`, friction row `i` over
+`f_k(a1) = 0` makes `k` active. Momentum rows over `P` and `Pℓ`, `a1 - a2 + l_k C_F` over `ℓ`, `C_F + C_G` over `l_plane`, friction row `i` over
 `e_i P max(U, σ)`; of the complementary pairs the lesser of `l_i` (`l_k/ℓ`) and `-f_i/ℓ`, of `l_plane` and `-g/ℓ`, of
 `σ/U` and `ξ/P²`, of `p_n/P` and `max f/ℓ`.
 """
@@ -39,7 +39,7 @@ def scales(problem: StepProblem, z: Unknowns) -> tuple[float, float]:
 
 
 def residual_rows(problem: StepProblem, z: Unknowns) -> Array:
-    """All scaled rows, shape (18 + m,): 15 equations, `m` pairs of surfaces, plane, friction, contact."""
+    """All scaled rows, shape (19 + m,): 15 equations, `f_k`, `m` pairs of surfaces, plane, friction, contact."""
     length = problem.body.radius
     impulse, speed = scales(problem, z)
     momentum, gap, direction, friction = problem.equations(z)
@@ -55,6 +55,7 @@ def residual_rows(problem: StepProblem, z: Unknowns) -> Array:
             friction / (problem.e * impulse * max(speed, z.sigma)),
             np.minimum(multipliers, inside / length),
             [
+                inside[z.k] / length,
                 min(z.l_plane, below / length),
                 min(z.sigma / speed, xi / impulse**2),
                 min(z.p_n / impulse, outside / length),

@@ -218,6 +218,18 @@ def curved(outer_radius: float, inner_radius: float, half_angle: float, width: f
         moments = section(x)
         areas[side] = (float(moments[0]), np.array([x, 0.0, moments[2] / moments[0]]))
         rims.append(Rim(frozenset({0, side}), np.array([x, 0.0, 0.0]), radius, reach))
+    # An end plane, s t - d n + x e_x, goes from the chord to the cone: s² = ρ² - d² with ρ = outer_radius - d.
+    nodes, weights = np.polynomial.legendre.leggauss(24)
+    total, first = 0.0, np.zeros(3)
+    for node, weight in zip(nodes, weights, strict=True):
+        inset = half * (1.0 + node) * tan
+        inner = (inner_radius * cos + inset - inset * sin) / cos
+        outer = math.sqrt((outer_radius - inset) ** 2 - inset**2)
+        strip, middle = weight * (outer - inner), 0.5 * (inner + outer)
+        total += strip
+        first += strip * np.array([half * node, middle * sin - inset * cos, middle * cos + inset * sin])
+    for end, sign in ((1, 1.0), (2, -1.0)):
+        areas[end] = (total * half / math.cos(draft), np.array([1.0, sign, 1.0]) * first / total)
     corners = np.array(vertices)
     air = frozenset({frozenset({3}), frozenset({3, 4}), frozenset({3, 5})})
     cells = [cell for cell in polytope_cells(surfaces, corners, incidence, air, areas) if 0 not in cell.surfaces]
