@@ -6,8 +6,8 @@ Equations::
     U = |v⁺| + ℓ|ω⁺| + P/m
 
 `f_k(a1) = 0` makes `k` active. Momentum rows over `P` and `Pℓ`, `a1 - a2 + l_k C_F` over `ℓ`, `C_F + C_G` over
-`l_plane`, friction row `i` over `e_i P max(U, σ)`; of the complementary pairs the lesser of `l_i` (`l_k/ℓ`) and `-f_i/ℓ`,
-of `l_plane` and `-g/ℓ`, of `σ/U` and `ξ/P²`, of `p_n/P` and `max f/ℓ`.
+`l_plane`, friction row `i` over `e_i P max(U, σ)`; of the complementary pairs the lesser of `l_i` (`l_k/ℓ`) and
+`-f_i/ℓ`, of `l_plane` and `-g/ℓ`, of `σ/U` and `ξ/P²`, of `p_n/P` and `max f/ℓ`.
 """
 
 from __future__ import annotations
