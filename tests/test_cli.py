@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,7 @@ import xarray as xr
 
 import tumblers
 from tumblers import Scenario, preset_scenario
+from tumblers.options import magnetization_cases, numbers
 
 COMMAND = [sys.executable, "-m", "tumblers"]
 SMALL = ["--drafts", "0,2", "--theta1", "0,10", "--theta2", "90:180:90"]
@@ -56,7 +58,7 @@ def test_simulate_writes_the_run_and_the_figure(scenario_file: Path, tmp_path: P
     assert {file.name for file in tmp_path.iterdir()} == {"scenario.toml", "run.nc", "run.png"}
 
 
-@pytest.mark.parametrize("robot", ["spiked", "spiked_ends", "scenario.toml"])
+@pytest.mark.parametrize("robot", ["spiked", "spiked_ends_pdms", "scenario.toml"])
 def test_sweep_writes_the_grid_and_the_maps(scenario_file: Path, tmp_path: Path, robot: str) -> None:
     arguments = ("--robot", robot, *SMALL, "--jobs", 2, "--out", "sweep.nc", "--plot", "sweep.svg")
     done = tumble("sweep", *arguments, cwd=tmp_path)
@@ -76,7 +78,10 @@ def test_a_sweep_with_bad_cases_says_so(tmp_path: Path) -> None:
     done = tumble("sweep", "--robot", "spiked", "--drafts", "0,80", "--theta1", "0", "--out", tmp_path / "sweep.nc")
     assert done.returncode == 0
     assert "1 of 2 cases done" in done.stdout
-    assert "failed: 1, the first: robot.draft_deg: " in done.stdout
+    assert done.stderr.startswith(
+        "tumblers: warning: 1 of 2 cases failed, the first: robot.draft_deg: found 80 degrees"
+    )
+    assert done.stderr.count("\n") == 1
 
 
 def test_presets_are_listed_and_printed(tmp_path: Path) -> None:
@@ -85,7 +90,9 @@ def test_presets_are_listed_and_printed(tmp_path: Path) -> None:
         assert name in listed
     (tmp_path / "printed.toml").write_text(tumble("presets", "spiked_ends").stdout)
     assert Scenario.load(tmp_path / "printed.toml") == preset_scenario("spiked_ends")
-    assert tumble("presets", "aluminium_pdms").stdout.startswith("[substrate]\n")
+    part, section = tumble("presets", "aluminium_pdms").stdout.split("\n")[:2]
+    assert part == "# aluminium_pdms: the section [substrate] alone, a part of a scenario and not a whole one"
+    assert section == "[substrate]"
 
 
 @pytest.mark.parametrize(
@@ -104,6 +111,10 @@ def test_presets_are_listed_and_printed(tmp_path: Path) -> None:
         (["simulate", "scenario.toml", "--out", "run.nc", "--plot", "nowhere/run.png"], "nowhere"),
         (["simulate", "scenario.toml", "--out", "run.nc", "--solver", "magic"], "magic"),
         (["simulate", "bad.toml", "--out", "run.nc"], "bad.toml: robot.mass_kg: found -1.0, expected"),
+        (
+            ["simulate", "long.toml", "--out", "run.nc"],
+            "long.toml: run.output_every_s: found 20000001 rows of about 250",
+        ),
         (["simulate", "same.nc", "--out", "./same.nc"], "named twice"),
         (["sweep", "--out", "sweep.nc"], "--robot"),
         (["sweep", "--robot", "cube", "--out", "sweep.nc"], "'cube'"),
@@ -116,7 +127,10 @@ def test_presets_are_listed_and_printed(tmp_path: Path) -> None:
         (["sweep", "--robot", "spiked", "--theta2", "0:1e9", "--out", "sweep.nc"], "--theta2"),
         (["sweep", "--robot", "spiked", "--jobs", "0", "--out", "sweep.nc"], "--jobs"),
         (["sweep", "--robot", "spiked", "--jobs", "two", "--out", "sweep.nc"], "--jobs"),
-        (["sweep", "--robot", "spiked", "--drafts", "80", "--out", "sweep.nc"], "no case"),
+        (
+            ["sweep", "--robot", "spiked", "--drafts", "80", "--out", "sweep.nc"],
+            "no case could be run, the first: robot.dr",
+        ),
         (["presets", "cube"], "'cube'"),
     ],
 )
@@ -124,29 +138,128 @@ def test_bad_input_gets_one_line_and_writes_nothing(
     scenario_file: Path, tmp_path: Path, arguments: list[str], words: str
 ) -> None:
     (tmp_path / "bad.toml").write_text(scenario_file.read_text().replace("mass_kg = 3.78e-8", "mass_kg = -1.0"))
+    long = scenario_file.read_text().replace("duration_s = 0.25", "duration_s = 10000.0")
+    (tmp_path / "long.toml").write_text(long)
     (tmp_path / "same.nc").write_text(scenario_file.read_text())
     before = {file.name: file.read_bytes() for file in tmp_path.iterdir()}
     assert words in refused(tumble(*arguments, cwd=tmp_path))
     assert {file.name: file.read_bytes() for file in tmp_path.iterdir()} == before
 
 
+def test_unconverged_steps_get_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    from tumblers.summary import run_warnings, sweep_warnings
+
+    scenario = preset_scenario("spiked", duration_s=0.01)
+    run = tumblers.simulate(scenario)
+    assert run_warnings(run, scenario.run.steps) == []
+    run.attrs |= {"unconverged_steps": 3, "max_residual": 0.25}
+    expected = "3 of 20 steps did not converge (largest residual 2.5e-01): the results there are not solutions"
+    assert run_warnings(run, scenario.run.steps) == [expected]
+    sweep = tumblers.sweep(scenario, drafts_deg=[0.0, 80.0], magnetization=[(0.0, 0.0)])
+    sweep["unconverged_steps"].values[0, 0] = 3
+    first, second = sweep_warnings(sweep, scenario.run.steps)
+    assert first.startswith("3 of 20 steps did not converge")
+    assert second.startswith("1 of 2 cases failed, the first: robot.draft_deg")
+
+
+def test_shares_of_contact_leave_out_the_start_and_weigh_by_time() -> None:
+    from tumblers.summary import run_summary
+
+    scenario = preset_scenario("spiked", duration_s=0.01)
+    run = tumblers.simulate(scenario).isel(time=[0, 5, 20])
+    run["contact_mode"].values[:] = [0, 1, 3]
+    run.attrs |= {"speed_m_per_s": -1e-12, "drift_m": -0.0, "twist_deg": -0.01}
+    summary = run_summary(run, 0.0)
+    assert "contact: airborne 0%, point 25%, line 0%, surface 75%" in summary
+    assert summary.startswith("speed 0.0 µm/s; drift 0.0 µm, twist 0.0° after one cycle")
+
+
+def test_the_papers_grid_stands_once() -> None:
+    from tumblers.commands import _DRAFTS, _THETA1, _THETA2
+
+    assert (_DRAFTS, _THETA1, _THETA2) == ("0:15", "0,10", "10:360:10")
+    assert tuple(numbers("--drafts", _DRAFTS)) == tumblers.PAPER_DRAFTS_DEG
+    cases = magnetization_cases(numbers("--theta1", _THETA1), numbers("--theta2", _THETA2))
+    assert tuple(cases) == tumblers.PAPER_MAGNETIZATION_DEG
+
+
+@pytest.mark.skipif(os.name == "nt", reason="limits")
+@pytest.mark.parametrize("limit_kB", [10, 100])
+def test_a_full_disk_gets_one_line(scenario_file: Path, tmp_path: Path, limit_kB: int) -> None:
+    import resource
+
+    limit = limit_kB * 1024
+    scenario_file.write_text(scenario_file.read_text().replace("duration_s = 0.25", "duration_s = 2"))
+    done = subprocess.run(
+        [*COMMAND, "simulate", "scenario.toml", "--out", "run.nc"],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        check=False,
+        env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"},
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)),
+    )
+    assert (done.returncode, done.stdout) == (1, ""), done.stderr
+    assert done.stderr.startswith("tumblers: ")
+    assert done.stderr.count("\n") == 1
+    assert {file.name for file in tmp_path.iterdir()} == {"scenario.toml"}
+
+
+INTERRUPTED = "tumblers: interrupted, nothing was written\n"
+
+
 @pytest.mark.skipif(os.name == "nt", reason="signals")
 @pytest.mark.parametrize("command", ["simulate", "sweep"])
 def test_ctrl_c_stops_with_one_line_and_leaves_nothing(scenario_file: Path, tmp_path: Path, command: str) -> None:
-    scenario_file.write_text(scenario_file.read_text().replace("duration_s = 0.25", "duration_s = 10000.0"))
+    long = "duration_s = 10000.0\noutput_every_s = 1.0"
+    scenario_file.write_text(scenario_file.read_text().replace("duration_s = 0.25", long))
     robot = [scenario_file] if command == "simulate" else ["--robot", scenario_file]
     arguments = [*COMMAND, command, *robot, "--out", tmp_path / "out.nc"]
-    process = subprocess.Popen(list(map(str, arguments)), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    master, terminal = os.openpty()
+    environment = os.environ | {"TERM": "xterm", "COLUMNS": "100"}
+    process = subprocess.Popen(list(map(str, arguments)), stdout=subprocess.PIPE, stderr=terminal, env=environment)
+    os.close(terminal)
     try:
-        time.sleep(5.0)
-        assert process.poll() is None
+        written = b""
+        while b"steps" not in written and b"cases" not in written:
+            written += os.read(master, 4096)
         process.send_signal(signal.SIGINT)
         start = time.perf_counter()
-        out, err = process.communicate(timeout=30)
+        with suppress(OSError):  # the end of a terminal
+            while part := os.read(master, 4096):
+                written += part
+        assert process.wait(timeout=30) == 130
         assert time.perf_counter() - start < 10.0
     finally:
         process.kill()
-    assert process.returncode == 130
-    assert out == ""
-    assert err == "tumblers: interrupted, nothing was written\n"
+        os.close(master)
+    assert process.stdout is not None
+    assert process.stdout.read() == b""
+    process.stdout.close()
+    assert written.decode().replace("\r\n", "\n").endswith(INTERRUPTED)
+    assert "Traceback" not in written.decode()
     assert {file.name for file in tmp_path.iterdir()} == {"scenario.toml"}
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals")
+@pytest.mark.parametrize("module", ["typer", "numpy", "xarray"])
+def test_ctrl_c_during_an_import_gets_one_line(scenario_file: Path, tmp_path: Path, module: str) -> None:
+    slow = tmp_path / "slow"
+    slow.mkdir()
+    (slow / f"{module}.py").write_text("import time; print('importing', flush=True); time.sleep(60)")
+    process = subprocess.Popen(
+        [*COMMAND, "simulate", str(scenario_file), "--out", str(tmp_path / "out.nc")],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=os.environ | {"PYTHONPATH": str(slow)},
+    )
+    try:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "importing\n"
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=30)
+    finally:
+        process.kill()
+    assert process.returncode == 130
+    assert err == INTERRUPTED

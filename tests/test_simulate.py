@@ -107,15 +107,51 @@ def test_a_save_that_fails_leaves_the_old_file(tmp_path: Path, monkeypatch: pyte
     path = tmp_path / "run.nc"
     path.write_bytes(b"old")
 
-    def interrupted(self: xr.Dataset, target: Path, **keywords: object) -> None:
-        Path(target).write_bytes(b"half")
+    def interrupted(self: Path, data: bytes) -> int:
+        with self.open("wb") as file:
+            file.write(data[: len(data) // 2])
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(xr.Dataset, "to_netcdf", interrupted)
+    monkeypatch.setattr(Path, "write_bytes", interrupted)
     with pytest.raises(KeyboardInterrupt):
         save_netcdf(run, path)
     assert path.read_bytes() == b"old"
     assert [file.name for file in tmp_path.iterdir()] == ["run.nc"]
+
+
+def test_a_motion_that_diverges_is_a_failure(scenario: Scenario, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fails(*arguments: object) -> None:
+        raise ArithmeticError("the state is not finite any more at 0.1 s: the motion diverged")
+
+    monkeypatch.setattr(_core, "simulate", fails)
+    for progress in (False, True, lambda done: None):
+        with pytest.raises(SimulationError, match=r"^the state is not finite any more at 0\.1 s"):
+            simulate(scenario, progress=progress)
+
+
+def test_an_error_of_the_callback_stays_its_own(scenario: Scenario) -> None:
+    def stop(done: int) -> None:
+        raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        simulate(scenario, progress=stop)
+
+
+def test_more_rows_than_memory_are_refused_before_the_run(scenario: Scenario) -> None:
+    long = Run(duration_s=10000.0, step_s=5e-4)
+    with pytest.raises(InputError, match=r"run\.output_every_s: found 20000001 rows .* set a larger output_every_s"):
+        simulate(replace(scenario, run=long))
+    replace(long, output_every_s=1.0).check_rows()
+
+
+@pytest.mark.parametrize(("duration_s", "every_s"), [(0.0102, None), (0.01, None), (0.0102, 2e-3), (5e-4, 5e-4)])
+def test_a_run_covers_its_time_in_whole_steps(scenario: Scenario, duration_s: float, every_s: float | None) -> None:
+    run = Run(duration_s=duration_s, step_s=5e-4, output_every_s=every_s)
+    made = simulate(replace(scenario, run=run))
+    assert made.sizes["time"] == run.rows
+    assert run.steps == replace(scenario, run=run).trial().steps
+    assert float(made["time"][-1]) == pytest.approx(run.steps * 5e-4, rel=1e-12)
+    assert run.steps * 5e-4 >= duration_s * (1.0 - 1e-9)
 
 
 def test_a_native_failure_is_of_this_packages_tree(scenario: Scenario, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,62 +7,43 @@ Examples
 >>> tumblers.save_netcdf(run, "run.nc")
 """
 
-from .errors import InputError, SimulationError, TumblersError
-from .field import Field, RotatingField, StaticField, TableField
-from .initial import Initial
-from .model import Model
-from .netcdf import save_netcdf
-from .presets import DRIVES, EXPERIMENTS, ROBOTS, SUBSTRATES, drive, preset_scenario
-from .robot import Robot
-from .run import Run
-from .scenario import Scenario
-from .shape import Cuboid, Curved, Ellipsoid, Hull, Shape, Spiked, SpikedEnds
-from .simulate import simulate
-from .substrate import Substrate
-from .sweep import (
-    PAPER_DRAFTS_DEG,
-    PAPER_MAGNETIZATION_DEG,
-    faster_cases,
-    ideal_speed,
-    preferred_cases,
-    sweep,
-)
-from .version import __version__
+from __future__ import annotations
 
-__all__ = [
-    "DRIVES",
-    "EXPERIMENTS",
-    "PAPER_DRAFTS_DEG",
-    "PAPER_MAGNETIZATION_DEG",
-    "ROBOTS",
-    "SUBSTRATES",
-    "Cuboid",
-    "Curved",
-    "Ellipsoid",
-    "Field",
-    "Hull",
-    "Initial",
-    "InputError",
-    "Model",
-    "Robot",
-    "RotatingField",
-    "Run",
-    "Scenario",
-    "Shape",
-    "SimulationError",
-    "Spiked",
-    "SpikedEnds",
-    "StaticField",
-    "Substrate",
-    "TableField",
-    "TumblersError",
-    "__version__",
-    "drive",
-    "faster_cases",
-    "ideal_speed",
-    "preferred_cases",
-    "preset_scenario",
-    "save_netcdf",
-    "simulate",
-    "sweep",
-]
+import sys
+from importlib import import_module
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .exports import *  # noqa: F403
+    from .exports import __version__ as __version__
+
+# What the command line imports has to pass through here: the public names, and NumPy and xarray with them, wait until
+# one of them is asked for.
+_ASKED_FOR_BY_PYTHON = ("__all__", "__version__")
+
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> object:
+        if name.startswith("_") and name not in _ASKED_FOR_BY_PYTHON:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        exports = import_module(".exports", __name__)
+        names = ["__all__", *exports.__all__]
+        globals().update((public, getattr(exports, public)) for public in names)
+        if name not in names:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        return globals()[name]
+
+    def __dir__() -> list[str]:
+        return sorted({*globals(), *import_module(".exports", __name__).__all__})
+
+
+class _Package(ModuleType):
+    def __setattr__(self, name: str, value: object) -> None:
+        # Importing the submodule `simulate` or `sweep` must not hide the function of that name.
+        if not (isinstance(value, ModuleType) and name in ("simulate", "sweep")):
+            super().__setattr__(name, value)
+
+
+sys.modules[__name__].__class__ = _Package

@@ -3,21 +3,31 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Mapping
+from contextlib import ExitStack
 from pathlib import Path
 from uuid import uuid4
 
-__all__ = ["atomic_file"]
+__all__ = ["write_files"]
 
 
-@contextmanager
-def atomic_file(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """Give a temporary path in the folder of `path` that replaces `path` at the end; on any exception it is removed."""
-    path = Path(path)
-    temporary = path.with_name(f".{path.name}.{uuid4().hex}.tmp")
-    try:
-        yield temporary
-        os.replace(temporary, path)
-    finally:
-        temporary.unlink(missing_ok=True)
+def write_files(contents: Mapping[Path, bytes | memoryview]) -> None:
+    """Write all files or none: each is complete under another name before the first takes its own.
+
+    Parameters
+    ----------
+    contents
+        The bytes of each file.
+
+    Raises
+    ------
+    OSError
+        A folder that is missing or cannot be written to, or a full disk.
+    """
+    temporaries = {path: path.with_name(f".{path.name}.{uuid4().hex}.tmp") for path in contents}
+    with ExitStack() as stack:
+        for path, temporary in temporaries.items():
+            stack.callback(temporary.unlink, missing_ok=True)
+            temporary.write_bytes(contents[path])
+        for path, temporary in temporaries.items():
+            os.replace(temporary, path)

@@ -16,5 +16,7 @@ def refuse_effects(value: object) -> None:
         key = f"effect[{i}]"
         table = require_table(key, entry)
         if not isinstance(table.get("name"), str):
-            raise InputError(f"{key}.name", show(table["name"]) if "name" in table else "nothing", "an effect's name")
+            raise InputError(
+                f"{key}.name", show(table["name"]) if "name" in table else "no such key", "an effect's name"
+            )
         raise InputError(f"{key}.name", show(table["name"]), "no [[effect]]: effects are not available in this version")

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from os import PathLike, fspath
 from typing import Self
 
-__all__ = ["InputError", "SimulationError", "TumblersError", "show"]
+__all__ = ["InputError", "SimulationError", "TumblersError", "show", "unreadable"]
 
 _LONGEST = 80
 
@@ -15,6 +14,20 @@ def show(value: object) -> str:
     """Return `value` as one short line of text."""
     text = " ".join(repr(value).split())
     return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
+
+
+def unreadable(error: OSError | ValueError) -> str:
+    """Return why a file could not be read as text."""
+    match error:
+        case FileNotFoundError():
+            return "no such file"
+        case IsADirectoryError():
+            return "a directory"
+        case OSError():
+            return f"a file that cannot be read ({(error.strerror or 'unknown reason').lower()})"
+        case UnicodeDecodeError():
+            return "bytes that are no UTF-8 text"
+    return "a path with a NUL byte"
 
 
 class TumblersError(Exception):
@@ -51,14 +64,11 @@ class InputError(TumblersError, ValueError):
         return " ".join(f"{text}, expected {self.expected}".split())
 
     def in_file(self, file: str | PathLike[str]) -> Self:
-        """Return this error with the file that it was found in, unless it names one."""
-        return self if self.file is not None else type(self)(self.key, self.found, self.expected, file)
+        """Return this error with the file that it was found in, unless it names one.
 
-    @classmethod
-    def from_core(cls, key: str, error: Exception, expected: str) -> Self:
-        """Return what the native module says about `key` as this error."""
-        text = " ".join(str(error).split())
-        match = re.fullmatch(r"(.*?), expected (.*)", text)
-        if match is None:
-            return cls(key, text, expected)
-        return cls(key, match[1].removeprefix(f"{key.rsplit('.', 1)[-1]} is "), match[2])
+        Parameters
+        ----------
+        file
+            The file.
+        """
+        return self if self.file is not None else type(self)(self.key, self.found, self.expected, file)

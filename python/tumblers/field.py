@@ -110,7 +110,18 @@ class TableField:
         object.__setattr__(self, "field_T", values)
 
     def covers(self, duration_s: float) -> None:
-        """Raise `InputError` unless the table covers a run of `duration_s` (s)."""
+        """Refuse a table that does not cover a run.
+
+        Parameters
+        ----------
+        duration_s
+            Time of the run, s.
+
+        Raises
+        ------
+        InputError
+            A table that starts after 0 or ends before `duration_s`.
+        """
         first, last = self.time_s[0], self.time_s[-1]
         if first > _COVER * duration_s or last < duration_s * (1.0 - _COVER):
             raise InputError("field.time_s", f"{first} s to {last} s", f"rows that cover 0 s to {duration_s} s")
@@ -128,7 +139,7 @@ def field_from_table(value: object, directory: Path, section: str = "field") -> 
     """Return the field of a TOML table; `directory` is where a relative ``csv`` is looked for."""
     table = require_table(section, value)
     if "kind" not in table:
-        raise InputError(f"{section}.kind", "nothing", " or ".join(FIELDS))
+        raise InputError(f"{section}.kind", "no such key", " or ".join(FIELDS))
     kind = FIELDS[choice(f"{section}.kind", table["kind"], list(FIELDS))]
     if kind is TableField and "time_s" not in table and "field_T" not in table:
         known_keys(section, table, ["kind", "csv", *(f.name for f in fields(kind))], ["csv"])

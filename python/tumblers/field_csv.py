@@ -6,7 +6,7 @@ import csv
 from pathlib import Path
 
 from .check import Vector
-from .errors import InputError, show
+from .errors import InputError, show, unreadable
 
 __all__ = ["read_field_csv"]
 
@@ -15,6 +15,13 @@ _COLUMNS = ("time_s", "Bx_T", "By_T", "Bz_T")
 
 def read_field_csv(key: str, path: Path) -> tuple[tuple[float, ...], tuple[Vector, ...]]:
     """Return the times (s) and the fields (T) of a CSV with columns time_s, Bx_T, By_T, Bz_T.
+
+    Parameters
+    ----------
+    key
+        The key that names the file, for errors.
+    path
+        The file.
 
     Raises
     ------
@@ -25,15 +32,16 @@ def read_field_csv(key: str, path: Path) -> tuple[tuple[float, ...], tuple[Vecto
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()
     except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else "no UTF-8 text"
-        raise InputError(key, f"{path}: {reason}", "a readable CSV file") from None
+        raise InputError(key, f"{unreadable(error)}: {repr(str(path))[1:-1]}", "a readable CSV file") from None
     try:
         table = [(number, row) for number, row in enumerate(csv.reader(lines, strict=True), 1) if row]
     except csv.Error as error:
         raise InputError(key, f"{path}: {error}", "a CSV file") from None
     header = [cell.strip() for cell in table[0][1]] if table else []
     if sorted(header) != sorted(_COLUMNS):
-        raise InputError(key, f"{path} with the columns {show(header)}", f"the columns {', '.join(_COLUMNS)}")
+        raise InputError(
+            key, f"{path} with the columns {show(header)}", f"the columns {', '.join(_COLUMNS)}, each once and no other"
+        )
     rows = [_row(key, path, line, row, header) for line, row in table[1:]]
     if len(rows) < 2:
         raise InputError(key, f"{path} with {len(rows)} rows", "at least 2")

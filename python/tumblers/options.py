@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from itertools import pairwise
 from math import floor
 from pathlib import Path
 
 from .check import number
 from .errors import InputError
 
-__all__ = ["PLOT_SUFFIXES", "magnetization_cases", "numbers", "output_file"]
+__all__ = ["PLOT_SUFFIXES", "as_option", "magnetization_cases", "numbers", "output_file"]
 
 PLOT_SUFFIXES = (".png", ".pdf", ".svg")
 _MOST = 100_000
@@ -31,6 +32,16 @@ def numbers(option: str, text: str) -> list[float]:
         count = floor((last - first) / step * (1.0 + 1e-12) + 1e-9) + 1
         found += [first + i * step for i in range(count)]
     return found
+
+
+def as_option(values: Sequence[float]) -> str:
+    """Return the text that `numbers` reads as these values: a range where they are evenly spaced."""
+    words = [f"{value:g}" for value in values]
+    steps = {after - before for before, after in pairwise(values)}
+    if len(values) < 3 or len(steps) != 1:
+        return ",".join(words)
+    step = steps.pop()
+    return ":".join([words[0], words[-1], *([] if step == 1.0 else [f"{step:g}"])])
 
 
 def _number(option: str, text: str, word: str) -> float:

@@ -44,7 +44,13 @@ class Experiment:
 
 
 def drive(strength_T: float, frequency_Hz: float) -> RotatingField:
-    """Return the rotating field that rolls the robot towards +y, B in T and f in Hz."""
+    """Return the rotating field that rolls the robot towards +y.
+
+    Parameters
+    ----------
+    strength_T, frequency_Hz
+        B, T, and the frequency, Hz.
+    """
     return RotatingField(strength_T=strength_T, frequency_Hz=frequency_Hz)
 
 

@@ -29,19 +29,32 @@ def native_call(words: str, total: int, progress: bool | OnProgress) -> Iterator
     SimulationError
         The native call failed.
     """
-    if callable(progress):
-        yield progress
-        return
+    own: list[BaseException] = []
     try:
-        if progress:
+        if callable(progress):
+            yield _remembering(progress, own)
+        elif progress:
             with _bar(words, total) as on_progress:
                 yield on_progress
         else:
             yield None
     except TumblersError:
         raise
-    except (ValueError, RuntimeError) as error:
+    except (ArithmeticError, RuntimeError, ValueError) as error:
+        if error in own:
+            raise
         raise SimulationError(" ".join(str(error).split())) from error
+
+
+def _remembering(callback: OnProgress, raised: list[BaseException]) -> OnProgress:
+    def report(done: int) -> None:
+        try:
+            callback(done)
+        except BaseException as error:
+            raised.append(error)
+            raise
+
+    return report
 
 
 @contextmanager

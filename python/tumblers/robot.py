@@ -9,6 +9,7 @@ from typing import Literal, Self, get_args
 
 from . import _core
 from .check import Vector, choice, direction, number
+from .core_errors import core_error
 from .errors import InputError, show
 from .section import as_section, known_keys, require_table, required_keys
 from .shape import SHAPES, Shape
@@ -67,7 +68,7 @@ class Robot:
             if getattr(self, name) is not None:
                 put(name, number(f"robot.{name}", getattr(self, name), above=0.0))
         if self.mass_kg is None and self.density_kg_per_m3 is None:
-            raise InputError("robot.mass_kg", "nothing", "mass_kg or density_kg_per_m3")
+            raise InputError("robot.mass_kg", "no such key", "mass_kg or density_kg_per_m3")
         if self.magnetic_volume_m3 is not None:
             put("magnetic_volume_m3", number("robot.magnetic_volume_m3", self.magnetic_volume_m3, least=0.0))
         for name in ("theta1_deg", "theta2_deg"):
@@ -77,7 +78,7 @@ class Robot:
             if self.magnetization_axis is not None:
                 raise InputError(f"robot.{name}", "it beside magnetization_axis", "the axis or the angles, not both")
         if self.theta2_deg is not None and self.theta1_deg is None:
-            raise InputError("robot.theta1_deg", "nothing beside theta2_deg", "this key")
+            raise InputError("robot.theta1_deg", "no such key beside theta2_deg", "theta1_deg")
         if self.magnetization_axis is not None:
             put("magnetization_axis", direction("robot.magnetization_axis", self.magnetization_axis))
         put("draft_deg", number("robot.draft_deg", self.draft_deg, least=0.0, below=90.0))
@@ -85,10 +86,23 @@ class Robot:
 
     @classmethod
     def from_table(cls, value: object, section: str = "robot") -> Self:
-        """Return the robot of a TOML table, whose keys are those of its shape and of this class."""
+        """Return the robot of a TOML table, whose keys are those of its shape and of this class.
+
+        Parameters
+        ----------
+        value
+            What the file holds.
+        section
+            The table's name, for errors.
+
+        Raises
+        ------
+        InputError
+            A key or a value that is refused.
+        """
         table = require_table(section, value)
         if "shape" not in table:
-            raise InputError(f"{section}.shape", "nothing", " or ".join(SHAPES))
+            raise InputError(f"{section}.shape", "no such key", " or ".join(SHAPES))
         shape = SHAPES[choice(f"{section}.shape", table["shape"], list(SHAPES))]
         of_shape = [f.name for f in fields(shape)]
         of_robot = [f.name for f in fields(cls) if f.name != "shape"]
@@ -104,11 +118,23 @@ class Robot:
         return {"shape": self.shape.kind, **as_section(self.shape), **table}
 
     def with_draft(self, draft_deg: float) -> Robot:
-        """Return this robot with another draft, degrees."""
+        """Return this robot with another draft.
+
+        Parameters
+        ----------
+        draft_deg
+            Inward draft of the sides, degrees.
+        """
         return replace(self, draft_deg=draft_deg)
 
     def with_magnetization(self, theta1_deg: float, theta2_deg: float) -> Robot:
-        """Return this robot with its magnetic axis at the angles θ1, θ2, degrees."""
+        """Return this robot with another magnetic axis.
+
+        Parameters
+        ----------
+        theta1_deg, theta2_deg
+            θ1, off the long axis, and θ2, about it, degrees.
+        """
         return replace(self, magnetization_axis=None, theta1_deg=theta1_deg, theta2_deg=theta2_deg)
 
     @property
@@ -162,7 +188,4 @@ def _body(shape: Shape, draft_deg: float, draft_model: DraftModel) -> _core.Body
     except InputError:
         raise
     except ValueError as error:
-        if "draft" in str(error):
-            raise InputError.from_core("robot.draft_deg", error, "a smaller draft") from None
-        key = "robot.vertices_m" if shape.kind == "hull" else "robot.shape"
-        raise InputError.from_core(key, error, "a body that can be built") from None
+        raise core_error(error) from None

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import ceil
 
 from .check import number
 from .errors import InputError, show
 
-__all__ = ["Run"]
+__all__ = ["MOST_STEPS", "Run"]
 
+MOST_STEPS = 1e9
 _WHOLE = 1e-6
+_ROUNDING = 1e-9
+_ROW_BYTES = 250
+_MOST_BYTES = 4_000_000_000
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -19,7 +24,7 @@ class Run:
     Attributes
     ----------
     duration_s, step_s
-        Time of the run and of one step, s.
+        Time of the run and of one step, s. A duration that is not a whole number of steps is covered in whole steps.
     incline_deg
         Slope of the substrate along +y, degrees.
     output_every_s
@@ -47,13 +52,46 @@ class Run:
         put("step_s", number("run.step_s", self.step_s, above=0.0))
         put("incline_deg", number("run.incline_deg", self.incline_deg, above=-90.0, below=90.0))
         put("gravity_m_per_s2", number("run.gravity_m_per_s2", self.gravity_m_per_s2, least=0.0))
+        ratio = self.duration_s / self.step_s
+        if self.step_s > self.duration_s:
+            raise InputError("run.step_s", show(self.step_s), f"at most duration_s, which is {self.duration_s:g}")
+        if ratio > MOST_STEPS:
+            found = f"{self.duration_s:g} s in steps of {self.step_s:g} s"
+            raise InputError("run.duration_s", found, f"at most {MOST_STEPS:g} steps")
         if self.output_every_s is not None:
             put("output_every_s", number("run.output_every_s", self.output_every_s, above=0.0))
-            ratio = self.output_every_s / self.step_s
-            if ratio > 1e15 or round(ratio) < 1 or abs(ratio - round(ratio)) > _WHOLE * ratio:
+            every = self.output_every_s / self.step_s
+            if self.output_every_s > self.duration_s:
+                expected = f"at most duration_s, which is {self.duration_s:g}"
+                raise InputError("run.output_every_s", show(self.output_every_s), expected)
+            if round(every) < 1 or abs(every - round(every)) > _WHOLE * every:
                 raise InputError("run.output_every_s", show(self.output_every_s), f"a multiple of step_s {self.step_s}")
+
+    @property
+    def steps(self) -> int:
+        """Number of steps: the duration is covered in whole steps, and a rounding beyond its end is not another one."""
+        return max(1, ceil(self.duration_s / self.step_s - _ROUNDING))
 
     @property
     def output_every(self) -> int:
         """Number of steps between two rows of the result."""
         return 1 if self.output_every_s is None else round(self.output_every_s / self.step_s)
+
+    @property
+    def rows(self) -> int:
+        """Number of rows of the result: the start, every `output_every` steps, and the end."""
+        return 1 + ceil(self.steps / self.output_every)
+
+    def check_rows(self) -> None:
+        """Refuse a run whose rows would not fit into memory, before it starts.
+
+        Raises
+        ------
+        InputError
+            More rows than 4 GB hold.
+        """
+        if self.rows * _ROW_BYTES > _MOST_BYTES:
+            size = f"{self.rows} rows of about {_ROW_BYTES} bytes, {self.rows * _ROW_BYTES / 1e9:.3g} GB"
+            raise InputError(
+                "run.output_every_s", size, f"at most {_MOST_BYTES / 1e9:g} GB: set a larger output_every_s"
+            )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass
 from dataclasses import field as attribute
 from math import radians
@@ -11,16 +10,18 @@ from pathlib import Path
 from typing import Any, Self
 
 from . import _core
-from .atomic import atomic_file
+from .atomic import write_files
+from .core_errors import core_error
 from .effect import refuse_effects
-from .errors import InputError, show
-from .field import Field, TableField, field_from_table, field_to_table
+from .errors import InputError, show, unreadable
+from .field import Field, RotatingField, TableField, field_from_table, field_to_table
 from .initial import Initial
 from .model import Model
 from .robot import Robot
 from .run import Run
 from .section import as_section, known_keys, read_section, write_section
 from .substrate import Substrate
+from .toml import parse_toml
 
 __all__ = ["FORMAT", "Scenario"]
 
@@ -34,17 +35,8 @@ _PARTS: dict[str, Any] = {
     "model": Model,
     "initial": Initial,
 }
-# Where the native module's names stand in a scenario.
-_SECTIONS = {
-    "step_s": "run.step_s",
-    "duration_s": "run.duration_s",
-    "the run": "run.duration_s",
-    "position_m": "initial.position_m",
-    "orientation": "initial.orientation",
-    "mass_kg": "robot.mass_kg",
-    "magnetic moment": "robot.magnetization_A_per_m",
-    "the field's table": "field.time_s",
-}
+# A cycle of the field that is cut into fewer steps is another motion.
+_STEPS_PER_CYCLE = 20
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -61,7 +53,8 @@ class Scenario:
     Raises
     ------
     InputError
-        A part of the wrong type, or a tabulated field that does not cover the run.
+        A part of the wrong type, a tabulated field that does not cover the run, or a step of more than a twentieth of a
+        rotating field's period.
     """
 
     robot: Robot
@@ -77,10 +70,20 @@ class Scenario:
                 raise InputError(name, show(getattr(self, name)), f"a {name.capitalize()}")
         if isinstance(self.field, TableField):
             self.field.covers(self.run.duration_s)
+        if isinstance(self.field, RotatingField):
+            longest = 1.0 / (_STEPS_PER_CYCLE * self.field.frequency_Hz)
+            if self.run.step_s > longest * (1.0 + 1e-9):
+                cycle = f"1/{_STEPS_PER_CYCLE} of the field's period at {self.field.frequency_Hz:g} Hz"
+                raise InputError("run.step_s", show(self.run.step_s), f"at most {longest:g} s, {cycle}")
 
     @classmethod
     def load(cls, path: str | PathLike[str]) -> Self:
         """Return the scenario of a TOML file, checked as a whole.
+
+        Parameters
+        ----------
+        path
+            The file.
 
         Raises
         ------
@@ -91,10 +94,9 @@ class Scenario:
         try:
             text = path.read_bytes().decode("utf-8")
         except OSError as error:
-            reason = "no such file" if isinstance(error, FileNotFoundError) else error.strerror or "an unreadable file"
-            raise InputError(None, reason.lower(), f"a {FORMAT} file", path) from None
-        except ValueError:
-            raise InputError(None, "bytes that are no UTF-8 text", f"a {FORMAT} file", path) from None
+            raise InputError(None, unreadable(error), f"a {FORMAT} file", path) from None
+        except ValueError as error:
+            raise InputError(None, unreadable(error), f"a {FORMAT} file", repr(str(path))[1:-1]) from None
         try:
             return cls.from_toml(text, directory=path.parent)
         except InputError as error:
@@ -102,17 +104,21 @@ class Scenario:
 
     @classmethod
     def from_toml(cls, text: str, *, directory: str | PathLike[str] = ".") -> Self:
-        """Return the scenario of a TOML text; `directory` is where a relative ``csv`` is looked for.
+        """Return the scenario of a TOML text.
+
+        Parameters
+        ----------
+        text
+            A scenario in the format ``tumblers-scenario/1``.
+        directory
+            Where a relative ``csv`` is looked for.
 
         Raises
         ------
         InputError
             One line that names the key, what was found and what was expected.
         """
-        try:
-            table = tomllib.loads(text)
-        except (tomllib.TOMLDecodeError, RecursionError) as error:
-            raise InputError(None, f"malformed TOML: {error}", "valid TOML") from None
+        table = parse_toml(text)
         if "format" in table and table["format"] != FORMAT:
             raise InputError("format", show(table["format"]), f"'{FORMAT}'")
         known_keys("", table, [*_REQUIRED, "model", "initial", "effect"], _REQUIRED)
@@ -142,9 +148,19 @@ class Scenario:
         return "\n".join([f'format = "{FORMAT}"\n', *(write_section(name, part) for name, part in parts.items())])
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Write the scenario to a TOML file, whole or not at all."""
-        with atomic_file(path) as temporary:
-            temporary.write_text(self.to_toml(), encoding="utf-8")
+        """Write the scenario to a TOML file, whole or not at all.
+
+        Parameters
+        ----------
+        path
+            The file; one that exists is replaced.
+
+        Raises
+        ------
+        OSError
+            The folder is missing or cannot be written to, or the disk is full.
+        """
+        write_files({Path(path): self.to_toml().encode()})
 
     def trial(self) -> _core.Trial:
         """Return the native trial.
@@ -182,5 +198,4 @@ class Scenario:
         except InputError:
             raise
         except ValueError as error:
-            key = next((key for name, key in _SECTIONS.items() if str(error).startswith(name)), "scenario")
-            raise InputError.from_core(key, error, "a run that can be carried out") from None
+            raise core_error(error) from None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, fields
+from difflib import get_close_matches
 from typing import TYPE_CHECKING, TypeVar
 
 from .errors import InputError, show
@@ -11,7 +12,7 @@ from .errors import InputError, show
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
-__all__ = ["as_section", "known_keys", "read_section", "require_table", "write_section"]
+__all__ = ["as_section", "known_keys", "read_section", "require_table", "required_keys", "write_section"]
 
 T = TypeVar("T", bound="DataclassInstance")
 
@@ -29,10 +30,14 @@ def known_keys(section: str, table: Mapping[str, object], known: Iterable[str], 
     names = list(known)
     for key in table:
         if key not in names:
-            raise InputError(f"{prefix}{show(key)[1:-1]}", "an unknown key", f"one of {', '.join(names)}")
+            near = get_close_matches(key, names, 1)
+            found = f"an unknown key (did you mean {near[0]}?)" if near else "an unknown key"
+            raise InputError(f"{prefix}{show(key)[1:-1]}", found, f"one of {', '.join(names)}")
     for key in required:
         if key not in table:
-            raise InputError(f"{prefix}{key}", "nothing", "this key")
+            raise InputError(
+                f"{prefix}{key}", "no such key", f"{key} in [{section}]" if section else f"{key} in the file"
+            )
 
 
 def required_keys(cls: type[DataclassInstance]) -> list[str]:

@@ -65,11 +65,12 @@ def simulate(scenario: Scenario, solver: Solver = "reduced", progress: bool | On
     Raises
     ------
     InputError
-        A scenario or a solver that is refused.
+        A scenario or a solver that is refused, or more rows than memory is meant for.
     SimulationError
-        The native module gave up.
+        The motion diverged, or the native module gave up.
     """
     choice("solver", solver, get_args(Solver))
+    scenario.run.check_rows()
     trial = scenario.trial()
     with native_call("steps", trial.steps, progress) as on_progress:
         run: Mapping[str, Any] = _core.simulate(trial, scenario.run.output_every, solver, on_progress)

@@ -14,6 +14,7 @@ from . import _core
 from .check import sequence
 from .errors import InputError, TumblersError, show
 from .field import RotatingField
+from .grid import PAPER_DRAFTS_DEG, PAPER_MAGNETIZATION_DEG
 from .progress import OnProgress, native_call
 from .scenario import Scenario
 from .shape import Cuboid, Spiked, SpikedEnds
@@ -22,19 +23,12 @@ from .version import __version__
 
 __all__ = [
     "DRIFT_LIMIT_M",
-    "PAPER_DRAFTS_DEG",
-    "PAPER_MAGNETIZATION_DEG",
     "faster_cases",
     "ideal_speed",
     "preferred_cases",
     "sweep",
 ]
 
-PAPER_DRAFTS_DEG: tuple[float, ...] = tuple(float(draft) for draft in range(16))
-PAPER_MAGNETIZATION_DEG: tuple[tuple[float, float], ...] = (
-    (0.0, 0.0),
-    *((10.0, 10.0 * n) for n in range(1, 37)),
-)
 DRIFT_LIMIT_M = 50e-6
 
 # name: (units, meaning)
@@ -165,7 +159,13 @@ def _pair(key: str, value: object) -> tuple[float, float]:
 
 
 def ideal_speed(scenario: Scenario) -> float | None:
-    """Return the speed without slip, hull perimeter × frequency, m/s; None if the field does not rotate."""
+    """Return the speed without slip, hull perimeter × frequency, m/s; None if the field does not rotate.
+
+    Parameters
+    ----------
+    scenario
+        The robot and the field.
+    """
     if not isinstance(scenario.field, RotatingField):
         return None
     return scenario.robot.with_draft(0.0).body().hull_perimeter_m * scenario.field.frequency_Hz
@@ -183,13 +183,25 @@ def _speeds(scenario: Scenario) -> dict[str, float]:
 
 
 def preferred_cases(dataset: xr.Dataset) -> xr.DataArray:
-    """Return which cases of a sweep the paper marks: no flip, and a drift of at most 50 µm."""
+    """Return which cases of a sweep the paper marks: no flip, and a drift of at most 50 µm.
+
+    Parameters
+    ----------
+    dataset
+        What `sweep` returned.
+    """
     straight: xr.DataArray = abs(dataset["drift_m"]) <= DRIFT_LIMIT_M
     return straight & ~dataset["flipped"]
 
 
 def faster_cases(dataset: xr.Dataset) -> xr.DataArray:
-    """Return which of the preferred cases are also faster than the ideal robot: none where no ideal is known."""
+    """Return which of the preferred cases are also faster than the ideal robot: none where no ideal is known.
+
+    Parameters
+    ----------
+    dataset
+        What `sweep` returned.
+    """
     ideal = dataset.attrs.get("ideal_speed_m_per_s", np.inf)
     fast: xr.DataArray = dataset["speed_m_per_s"] > ideal
     return preferred_cases(dataset) & fast

@@ -223,9 +223,9 @@ def curved(outer_radius: float, inner_radius: float, half_angle: float, width: f
     total, first = 0.0, np.zeros(3)
     for node, weight in zip(nodes, weights, strict=True):
         inset = half * (1.0 + node) * tan
-        inner = (inner_radius * cos + inset - inset * sin) / cos
-        outer = math.sqrt((outer_radius - inset) ** 2 - inset**2)
-        strip, middle = weight * (outer - inner), 0.5 * (inner + outer)
+        low = (inner_radius * cos + inset - inset * sin) / cos
+        high = math.sqrt((outer_radius - inset) ** 2 - inset**2)
+        strip, middle = weight * (high - low), 0.5 * (low + high)
         total += strip
         first += strip * np.array([half * node, middle * sin - inset * cos, middle * cos + inset * sin])
     for end, sign in ((1, 1.0), (2, -1.0)):
