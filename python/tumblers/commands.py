@@ -1,6 +1,5 @@
 """The commands of ``tumblers``."""
 
-
 from __future__ import annotations
 
 from collections.abc import Iterator

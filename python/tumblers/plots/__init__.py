@@ -1,10 +1,12 @@
-"""Figures: every function takes and returns Axes, or returns a whole Figure."""
+"""Figures: without Axes or Figure of the caller's, every function draws on a new figure of pyplot."""
 
+from .image import figure_bytes
 from .run import plot_contact_modes, plot_forces, plot_run, plot_trajectory
 from .sweep import plot_map, plot_sweep
 from .top_view import plot_top_view
 
 __all__ = [
+    "figure_bytes",
     "plot_contact_modes",
     "plot_forces",
     "plot_map",

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 
 from ..scenario import Scenario
-from .style import PER_METRE, axes_or_new
+from .style import PER_METRE, axes_or_new, legend_above
 
 __all__ = ["plot_top_view"]
 
@@ -57,7 +57,7 @@ def plot_top_view(run: xr.Dataset, snapshots: int = 8, ax: Axes | None = None) -
     if not ax.yaxis_inverted():
         ax.invert_yaxis()
     ax.set(title="View from above", xlabel="y (µm), direction of travel", ylabel="x (µm)")
-    ax.legend(fontsize="x-small", loc="center left", bbox_to_anchor=(1.0, 0.5))
+    legend_above(ax, ncols=-(-(len(rows) + 1) // 2))
     return ax
 
 
