@@ -3,9 +3,13 @@
 PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
+# Python sources are not among them: an editable install reads them where they are.
 SOURCES := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock pyproject.toml
 
-.PHONY: sweep test rust-test python-test lint bench clean
+# One interpreter for every cargo call, or pyo3 would be built again for each other one that it finds.
+export PYO3_PYTHON := $(abspath $(BIN)/python)
+
+.PHONY: sweep test lint rust-test python-test bench clean
 
 sweep: $(VENV)/installed
 	$(BIN)/tumblers sweep --robot spiked --out sweep-spiked.nc --plot sweep-spiked.png
@@ -13,7 +17,7 @@ sweep: $(VENV)/installed
 
 test: lint rust-test python-test
 
-lint: $(VENV)/installed
+lint: $(VENV)/installed $(VENV)/developing
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets --locked -- -D warnings
 	$(BIN)/ruff check python tests
@@ -24,20 +28,30 @@ lint: $(VENV)/installed
 rust-test:
 	cargo test --locked
 
-python-test: $(VENV)/installed
-	$(BIN)/pytest
+python-test: $(VENV)/installed $(VENV)/developing
+	$(BIN)/pytest -n auto
 
 bench:
 	cargo bench -p tumblers-benches --locked
 
 $(BIN)/maturin:
-	$(PYTHON) -c 'import sys; sys.exit("tumblers needs Python 3.11 or newer, found " + sys.version.split()[0] if sys.version_info < (3, 11) else 0)'
-	$(PYTHON) -m venv $(VENV)
+	@command -v $(PYTHON) >/dev/null || { \
+	  echo 'tumblers needs Python 3.11 or newer, found no $(PYTHON): make PYTHON=python3.12 ...' >&2; exit 1; }
+	@$(PYTHON) -c 'import sys; sys.exit("tumblers needs Python 3.11 or newer, found " + sys.version.split()[0] + ": make PYTHON=python3.12 ..." if sys.version_info < (3, 11) else 0)'
+	$(PYTHON) -m venv $(VENV) || { \
+	  echo '$(PYTHON) cannot make virtual environments: install python3-venv (Debian, Ubuntu: apt install python3-venv)' >&2; \
+	  exit 1; }
 	$(BIN)/pip install --quiet --disable-pip-version-check 'maturin>=1.9,<2'
 
-# An editable install of the release build, with everything that the tests need.
-$(VENV)/installed: $(BIN)/maturin $(SOURCES)
-	. $(BIN)/activate && maturin develop --release --locked --extras dev
+# An editable install of the release build.
+$(VENV)/installed: $(SOURCES) | $(BIN)/maturin
+	. $(BIN)/activate && maturin develop --release --locked
+	touch $@
+
+# What the tests and the lints need beside it.
+$(VENV)/developing: pyproject.toml | $(BIN)/maturin
+	$(BIN)/python -c 'import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"]["dev"], sep="\n")' >$(VENV)/dev.txt
+	$(BIN)/pip install --quiet --disable-pip-version-check -r $(VENV)/dev.txt
 	touch $@
 
 clean:

@@ -1,17 +1,20 @@
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
-import matplotlib as mpl
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib import colormaps
+from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
 from tumblers import Scenario, faster_cases, preferred_cases, preset_scenario, simulate, sweep
 from tumblers.plots import (
+    figure_bytes,
     plot_contact_modes,
     plot_forces,
     plot_map,
@@ -20,6 +23,13 @@ from tumblers.plots import (
     plot_top_view,
     plot_trajectory,
 )
+
+
+@pytest.fixture(autouse=True)
+def _no_windows() -> Iterator[None]:
+    plt.switch_backend("Agg")
+    yield
+    plt.close("all")
 
 
 @pytest.fixture(scope="module")
@@ -71,9 +81,11 @@ def test_contact_modes_are_named(run: xr.Dataset) -> None:
 def test_forces_are_in_micronewtons(run: xr.Dataset) -> None:
     ax = plot_forces(run)
     normal, friction, adhesion = ax.get_lines()
-    np.testing.assert_allclose(normal.get_ydata(), run["normal_force_N"] * 1e6)
-    np.testing.assert_allclose(friction.get_ydata(), np.hypot(*run["friction_force_N"].values[:, :2].T) * 1e6)
-    np.testing.assert_allclose(adhesion.get_ydata(), run["adhesion_force_N"] * 1e6)
+    # The row before the first step has no contact force, and is left out.
+    np.testing.assert_allclose(normal.get_xdata(), run["time"][1:])
+    np.testing.assert_allclose(normal.get_ydata(), run["normal_force_N"][1:] * 1e6)
+    np.testing.assert_allclose(friction.get_ydata(), np.hypot(*run["friction_force_N"].values[1:, :2].T) * 1e6)
+    np.testing.assert_allclose(adhesion.get_ydata(), run["adhesion_force_N"][1:] * 1e6)
     assert ax.get_ylabel() == "force (µN)"
 
 
@@ -119,8 +131,72 @@ def test_maps_of_a_single_failed_case_are_drawn(made: xr.Dataset) -> None:
     plot_sweep(made.isel(draft_deg=[1], magnetization_case=[1]))
 
 
-def test_figures_are_saved_without_a_display(run: xr.Dataset, made: xr.Dataset, tmp_path: Path) -> None:
-    for name, figure in {"run": plot_run(run), "sweep": plot_sweep(made)}.items():
-        figure.savefig(tmp_path / f"{name}.png")
-        assert (tmp_path / f"{name}.png").read_bytes().startswith(b"\x89PNG")
-    assert mpl.get_backend() is not None
+def ticks(ax: Axes, minor: bool = False) -> list[str]:
+    return [label.get_text() for label in ax.get_xticklabels(minor=minor)]
+
+
+@pytest.mark.parametrize("peak", [1.4, 10.0])
+def test_a_peak_at_the_start_leaves_the_scale_with_a_note(run: xr.Dataset, peak: float) -> None:
+    normal = np.ones(run.sizes["time"]) * 1e-6
+    normal[1] = peak * 1e-6
+    none = {"friction_force_N": run["friction_force_N"] * 0.0, "adhesion_force_N": run["adhesion_force_N"] * 0.0}
+    ax = plot_forces(run.assign(normal_force_N=("time", normal), **none))
+    assert (ax.get_ylim()[1] < peak) == (peak > 1.5)
+    notes = [text.get_text() for text in ax.texts]
+    assert notes == (["off the scale at the start: up to 10 µN at 0.0005 s"] if peak > 1.5 else [])
+
+
+def test_a_thin_path_gets_a_low_view_from_above(run: xr.Dataset) -> None:
+    moved = run["position_m"].copy()
+    moved[:, 1] = np.linspace(0.0, 0.05, run.sizes["time"])
+    thin, figure = plot_run(run.assign(position_m=moved)), plot_run(run)
+    assert thin.get_size_inches()[1] < figure.get_size_inches()[1]
+
+
+def test_the_case_without_error_is_told_from_theta2_of_zero() -> None:
+    short = preset_scenario("spiked", duration_s=0.001)
+    result = sweep(short, drafts_deg=[0.0], magnetization=[(0, 0), (10, 0), (10, 90)])
+    ax = plot_map(result, "speed_m_per_s")
+    assert ticks(ax) == ["none", "0", "90"]
+    assert ax.get_xlabel() == "θ2 (°) at θ1 = 10°; none: no magnetization error"
+    grouped = sweep(short, drafts_deg=[0.0], magnetization=[(0, 0), (5, 0), (5, 90), (10, 0), (10, 90)])
+    ax = plot_map(grouped, "speed_m_per_s")
+    assert ticks(ax) == ["none", "0", "90", "0", "90"]
+    assert [words.strip() for words in ticks(ax, minor=True)] == ["θ1 = 5°", "θ1 = 10°"]
+    figure = plot_sweep(grouped)
+    assert figure.get_suptitle() == "Manufacturing errors: spiked robot, 20 mT at 1 Hz"
+
+
+@pytest.mark.parametrize(("name", "noise"), [("twist_deg", 1e-9), ("drift_m", 1e-15), ("speed_m_per_s", 1e-15)])
+def test_rounding_noise_looks_neutral(made: xr.Dataset, name: str, noise: float) -> None:
+    shape = made[name].shape
+    values = noise * np.linspace(-1.0, 1.0, made[name].size).reshape(shape)
+    made = made.assign({name: (made[name].dims, values), "flipped": (made[name].dims, np.zeros(shape, dtype=bool))})
+    del made.attrs["ideal_speed_m_per_s"], made.attrs["flipped_speed_m_per_s"]
+    norm = plot_map(made, name).collections[0].norm  # type: ignore[arg-type]
+    assert norm.vmax - norm.vmin == pytest.approx(2.0)
+
+
+def test_half_a_turn_to_either_side_is_one_colour(made: xr.Dataset) -> None:
+    twist = np.array([[180.0, -179.9, 90.0], [-90.0, 0.0, 0.0]])
+    mesh = plot_map(made.assign(twist_deg=(made["twist_deg"].dims, twist)), "twist_deg").collections[0]
+    left, right, up, down = (np.array(mesh.cmap(mesh.norm(angle))) for angle in (180.0, -179.9, 90.0, -90.0))
+    assert np.abs(left - right).max() < 0.02
+    assert np.abs(up - down).max() > 0.2
+    small = plot_map(made, "twist_deg").collections[0]
+    assert small.cmap == colormaps["PuOr"]
+
+
+def test_pyplot_saves_what_was_plotted(run: xr.Dataset, made: xr.Dataset, tmp_path: Path) -> None:
+    for name, plot in {"run": lambda: plot_run(run), "sweep": lambda: plot_sweep(made)}.items():
+        assert plot() is plt.gcf()
+        plt.savefig(tmp_path / f"{name}.png", dpi=40)
+        assert plt.imread(tmp_path / f"{name}.png").std() > 0.05
+    assert plot_forces(run) is plt.gca()
+
+
+@pytest.mark.parametrize(("kind", "start"), [("png", b"\x89PNG"), ("pdf", b"%PDF"), ("svg", b"<?xml")])
+def test_files_leave_no_figure_behind(run: xr.Dataset, made: xr.Dataset, kind: str, start: bytes) -> None:
+    assert figure_bytes(run, kind, dpi=40).startswith(start)
+    assert figure_bytes(made, kind, dpi=40).startswith(start)
+    assert plt.get_fignums() == []

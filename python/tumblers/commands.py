@@ -213,14 +213,9 @@ def _write(result: xr.Dataset, out: Path, plot: Path | None) -> None:
 
     files: dict[Path, bytes | memoryview] = {out: netcdf_bytes(result)}
     if plot is not None:
-        from io import BytesIO
+        from .plots import figure_bytes
 
-        from .plots import plot_run, plot_sweep
-
-        figure = plot_sweep(result) if "magnetization_case" in result.dims else plot_run(result)
-        buffer = BytesIO()
-        figure.savefig(buffer, format=plot.suffix.lower().removeprefix("."), dpi=150)
-        files[plot] = buffer.getvalue()
+        files[plot] = figure_bytes(result, plot.suffix.lower().removeprefix("."))
     write_files(files)
 
 

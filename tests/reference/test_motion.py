@@ -58,9 +58,11 @@ def test_sliding_and_spinning(e: tuple[float, float, float]) -> None:
     inertia = trial.body.inertia_per_mass[2, 2]
     change = (found.V - np.array([v[0], v[1], 0.0, 0.0, 0.0, w])) / trial.step
     push = -0.3 * 9.8 / sigma
-    np.testing.assert_allclose(change[:2], push * np.array(e[:2]) ** 2 * v, rtol=1e-3)
-    assert change[5] == pytest.approx(push * e[2] ** 2 * w / inertia, rel=2e-2)
-    assert found.sigma == pytest.approx(sigma, rel=2e-2)
+    # Friction follows the slip at the end of the step, another by a share of the order of μ g h/σ <= 1.4e-4; a residual
+    # of 1e-10 leaves a share of 1e-10 |v|/(μ g h) = 2e-5.
+    np.testing.assert_allclose(change[:2], push * np.array(e[:2]) ** 2 * v, rtol=2e-4)
+    assert change[5] == pytest.approx(push * e[2] ** 2 * w / inertia, rel=2e-4)
+    assert found.sigma == pytest.approx(sigma, rel=2e-4)
     assert found.mode is ContactMode.SURFACE
 
 
@@ -127,7 +129,9 @@ def test_friction_only_dissipates(paper_cuboid: Trial) -> None:
 
 @pytest.mark.parametrize("when", ["start_of_step", "end_of_step", "midpoint"])
 def test_torque_times_agree_for_small_steps(paper_cuboid: Trial, when: str) -> None:
-    """All three converge to one motion."""
-    trial = replace(paper_cuboid, torque_time=when, step=4e-5, duration=2e-3)
-    reference = replace(paper_cuboid, torque_time="midpoint", step=2e-5, duration=2e-3)
-    np.testing.assert_allclose(run(trial).states[-1].quaternion, run(reference).states[-1].quaternion, atol=2e-3)
+    """All three converge to one motion; the torque at the end is off by 4.5e-4, in proportion to the step."""
+    trial = replace(paper_cuboid, torque_time=when, step=4e-5, duration=5e-3)
+    reference = replace(paper_cuboid, torque_time="midpoint", step=2e-5, duration=5e-3)
+    end = run(reference).states[-1].quaternion
+    assert abs(end[1]) > 0.005  # it has moved by more than the tolerance
+    np.testing.assert_allclose(run(trial).states[-1].quaternion, end, rtol=0.0, atol=6e-4)

@@ -42,7 +42,7 @@ def plot_trajectory(run: xr.Dataset, ax: Axes | None = None) -> Axes:
     words = {"x": "x (drift)", "y": "y (travel)", "z": "z (height)"}
     for (axis, label), colour, dashes in zip(words.items(), (ORANGE, BLUE, GREEN), ("--", "-", ":"), strict=True):
         ax.plot(run["time"], moved.sel(axis=axis), color=colour, linestyle=dashes, label=label)
-    ax.set(title="Displacement of the centre of mass", xlabel="time (s)", ylabel="displacement (µm)")
+    ax.set(title="Centre of mass", xlabel="time (s)", ylabel="displacement (µm)")
     legend_above(ax, ncols=3)
     return ax
 
@@ -105,6 +105,7 @@ def _limit(ax: Axes, time: np.ndarray[Any, Any], forces: np.ndarray[Any, Any]) -
         (0.02, 0.985),
         xycoords="axes fraction",
         va="top",
+        bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.5},
         fontsize="small",
     )
 
