@@ -208,6 +208,11 @@ def test_a_full_disk_gets_one_line(scenario_file: Path, tmp_path: Path, limit_kB
 INTERRUPTED = "tumblers: interrupted, nothing was written\n"
 
 
+def hear_interrupts() -> None:
+    """Undo what a shell does to the jobs that it starts in the background, the tests among them: it ignores SIGINT."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 @pytest.mark.skipif(os.name == "nt", reason="signals")
 @pytest.mark.parametrize("command", ["simulate", "sweep"])
 def test_ctrl_c_stops_with_one_line_and_leaves_nothing(scenario_file: Path, tmp_path: Path, command: str) -> None:
@@ -217,7 +222,13 @@ def test_ctrl_c_stops_with_one_line_and_leaves_nothing(scenario_file: Path, tmp_
     arguments = [*COMMAND, command, *robot, "--out", tmp_path / "out.nc"]
     master, terminal = os.openpty()
     environment = os.environ | {"TERM": "xterm", "COLUMNS": "100"}
-    process = subprocess.Popen(list(map(str, arguments)), stdout=subprocess.PIPE, stderr=terminal, env=environment)
+    process = subprocess.Popen(
+        list(map(str, arguments)),
+        stdout=subprocess.PIPE,
+        stderr=terminal,
+        env=environment,
+        preexec_fn=hear_interrupts,
+    )
     os.close(terminal)
     try:
         written = b""
@@ -253,6 +264,7 @@ def test_ctrl_c_during_an_import_gets_one_line(scenario_file: Path, tmp_path: Pa
         stderr=subprocess.PIPE,
         text=True,
         env=os.environ | {"PYTHONPATH": str(slow)},
+        preexec_fn=hear_interrupts,
     )
     try:
         assert process.stdout is not None
