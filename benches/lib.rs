@@ -2,7 +2,8 @@
 
 use dynamics::trial::TrialParts;
 use dynamics::{
-    AdhesionActsAt, AdhesionEnters, Field, MagneticTorque, Model, Robot, SolverKind, Stepper, Substrate, Trial, Vec3,
+    AdhesionActsAt, AdhesionEnters, Field, MagneticTorque, Model, Relief, Robot, SolverKind, Stepper, Substrate,
+    Surroundings, Trial, Vec3,
 };
 use geometry::{Body, ContactMode, Draft, DraftModel};
 use nalgebra::Quaternion;
@@ -29,7 +30,10 @@ fn parts(body: Body, mass: f64, moment: Vec3, substrate: Substrate, strength: f6
             adhesion_acts_at: AdhesionActsAt::Ecp,
             adhesion_enters: AdhesionEnters::Normal,
         },
+        relief: Relief::flat(),
+        surroundings: Surroundings::none(),
         incline: 0.0,
+        side_incline: 0.0,
         gravity: 9.8,
         duration: 1.0,
         step: 5e-4,
@@ -51,6 +55,7 @@ fn cuboid_parts(frequency: f64) -> TrialParts {
         adhesion: 1.19,
         electrostatic_force: 6.54e-7,
         line_contact_width: 0.0,
+        compliance: 0.0,
     };
     let body = Body::cuboid(8e-4, 4e-4, 1e-4, draft(0.0)).expect("the cuboid");
     let axis = Vec3::new(0.0, 27f64.to_radians().cos(), 27f64.to_radians().sin());
@@ -75,6 +80,7 @@ pub fn pdms(shape: Shape, draft_deg: f64, theta1_deg: f64, theta2_deg: f64) -> T
         adhesion: 340.115,
         electrostatic_force: 2.2022e-7,
         line_contact_width: 0.0,
+        compliance: 0.0,
     };
     let draft = draft(draft_deg);
     let body = match shape {

@@ -25,6 +25,10 @@ from tumblers import (
     Substrate,
     TableField,
 )
+from tumblers.camera import Camera
+from tumblers.effects.catalogue import CATALOGUE
+from tumblers.relief import Relief
+from tumblers.surroundings import Surroundings
 
 
 def lengths(low: float = 1e-5, high: float = 1e-3) -> st.SearchStrategy[float]:
@@ -86,6 +90,7 @@ def robots(draw: st.DrawFn) -> Robot:
         magnetic_volume_m3=draw(st.none() | st.floats(0, 1e-10)),
         draft_deg=draw(st.floats(0, 1.0)) if drafted else 0.0,
         draft_model=draw(st.sampled_from(["geometric", "as_released"])),
+        center_of_mass_m=draw(st.tuples(*[st.floats(-1e-6, 1e-6)] * 3)),
         **draw(MASS | st.fixed_dictionaries({"density_kg_per_m3": st.floats(500, 9000)})),
         **draw(MAGNETIZATION),
     )
@@ -103,6 +108,8 @@ def rotating(draw: st.DrawFn) -> RotatingField:
         frequency_Hz=draw(st.floats(0.1, 50)),
         rotation_axis=a,
         initial_direction=b,
+        quadrature_ratio=draw(st.floats(0, 2)),
+        phase_error_deg=draw(st.floats(-90, 90)),
     )
 
 
@@ -116,6 +123,24 @@ QUATERNION = (
     .map(lambda q: tuple(component / math.hypot(*q) for component in q))
 )
 VELOCITY = st.tuples(UNIT, UNIT, UNIT)
+AMPLITUDES = st.lists(st.tuples(UNIT, UNIT), max_size=3)
+RELIEF = st.builds(
+    lambda wavelength, rows: Relief(
+        wavelength_m=wavelength, cosine_m=tuple(c for c, _ in rows), sine_m=tuple(s for _, s in rows)
+    ),
+    st.floats(1e-4, 1.0),
+    AMPLITUDES,
+)
+SURROUNDINGS = st.builds(
+    lambda rows, **rest: Surroundings(wrench_time_s=tuple(range(len(rows))), wrench_N_N_m=tuple(rows), **rest),
+    st.lists(st.tuples(*[UNIT] * 6), max_size=3),
+    force_N=VELOCITY,
+    torque_N_m=VELOCITY,
+    translational_drag_N_s_per_m=st.floats(0, 1),
+    rotational_drag_N_m_s=st.floats(0, 1),
+    sheet_conductance_S=st.floats(0, 1e8),
+)
+NEUTRAL_EFFECTS = st.lists(st.sampled_from(list(CATALOGUE.values())).map(lambda effect: effect()), max_size=3)
 SCENARIO = st.builds(
     Scenario,
     robot=robots(),
@@ -126,6 +151,7 @@ SCENARIO = st.builds(
         adhesion_N_per_m2=st.floats(0, 400),
         electrostatic_force_N=st.floats(0, 1e-5),
         line_contact_width_m=st.floats(0, 1e-5),
+        compliance_m_per_N=st.floats(0, 30),
     ),
     field=FIELD,
     run=st.builds(
@@ -133,6 +159,7 @@ SCENARIO = st.builds(
         duration_s=st.floats(0.01, 1.0),
         step_s=st.floats(1e-5, 1e-3),
         incline_deg=st.floats(-89, 89),
+        side_incline_deg=st.floats(-89, 89),
         gravity_m_per_s2=st.floats(0, 20),
     ),
     model=st.builds(
@@ -148,6 +175,10 @@ SCENARIO = st.builds(
         linear_velocity_m_per_s=VELOCITY,
         angular_velocity_rad_per_s=VELOCITY,
     ),
+    relief=RELIEF,
+    surroundings=SURROUNDINGS,
+    camera=st.builds(Camera, scale=st.floats(0.1, 2), heading_deg=st.floats(-180, 180)),
+    effects=NEUTRAL_EFFECTS,
 )
 
 

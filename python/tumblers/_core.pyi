@@ -6,7 +6,7 @@ from typing import Literal, TypeAlias, TypedDict, final, type_check_only
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Body", "Field", "Trial", "simulate", "step", "sweep"]
+__all__ = ["Body", "Field", "Trial", "Walk", "rollouts", "simulate", "step", "sweep"]
 
 _Numbers: TypeAlias = Sequence[float] | NDArray[np.float64]
 _Rows: TypeAlias = Sequence[Sequence[float]] | NDArray[np.float64]
@@ -44,6 +44,28 @@ class _Sweep(TypedDict):
     max_residual: _Floats
     max_penetration_m: _Floats
     error: list[str | None]
+
+@type_check_only
+class _Rollout(TypedDict):
+    time_s: _Floats
+    position_m: _Floats
+    orientation: _Floats
+    contact_mode: NDArray[np.int8]
+    unconverged_steps: int
+    error: str | None
+
+@type_check_only
+class _Walked(TypedDict):
+    time_s: float
+    position_m: _Floats
+    orientation: _Floats
+    linear_velocity_m_per_s: _Floats
+    angular_velocity_rad_per_s: _Floats
+    seen_position_m: _Floats
+    seen_orientation: _Floats
+    contact_mode: int
+    normal_force_N: float
+    converged: bool
 
 @type_check_only
 class _Step(TypedDict):
@@ -99,6 +121,8 @@ class Body:
     def ellipsoid(semi_axes_m: _Numbers) -> Body: ...
     @staticmethod
     def hull(vertices_m: _Rows) -> Body: ...
+    def with_center_of_mass(self, offset_m: _Numbers) -> Body:
+        """Return the body with its centre of mass, and the origin with it, elsewhere, m, body frame."""
     @property
     def volume_m3(self) -> float:
         """Volume of the real body, m³."""
@@ -121,7 +145,12 @@ class Field:
 
     @staticmethod
     def rotating(
-        strength_T: float, frequency_Hz: float, rotation_axis: _Numbers, initial_direction: _Numbers
+        strength_T: float,
+        frequency_Hz: float,
+        rotation_axis: _Numbers,
+        initial_direction: _Numbers,
+        quadrature_ratio: float = 1.0,
+        phase_error_rad: float = 0.0,
     ) -> Field: ...
     @staticmethod
     def uniform(strength_T: float, direction: _Numbers) -> Field: ...
@@ -157,6 +186,18 @@ class Trial:
         orientation: _Numbers | None = None,
         linear_velocity_m_per_s: _Numbers = ...,
         angular_velocity_rad_per_s: _Numbers = ...,
+        side_incline_rad: float = 0.0,
+        compliance_m_per_N: float = 0.0,
+        relief_wavelength_m: float = 2e-3,
+        relief_cosine_m: _Numbers = ...,
+        relief_sine_m: _Numbers = ...,
+        force_N: _Numbers = ...,
+        torque_N_m: _Numbers = ...,
+        translational_drag_N_s_per_m: float = 0.0,
+        rotational_drag_N_m_s: float = 0.0,
+        sheet_conductance_S: float = 0.0,
+        wrench_time_s: _Numbers = ...,
+        wrench_N_N_m: _Rows = ...,
     ) -> Trial: ...
     @property
     def stability_bound_s(self) -> float:
@@ -175,6 +216,23 @@ def simulate(
 
 def sweep(trials: Sequence[Trial], threads: int = 0, on_progress: Callable[[int], None] | None = None) -> _Sweep:
     """Run trials in parallel (0: all threads); the same bits for any number of threads."""
+
+def rollouts(
+    trials: Sequence[Trial],
+    every: Sequence[int],
+    threads: int = 0,
+    on_progress: Callable[[int], None] | None = None,
+) -> list[_Rollout]:
+    """Run trials in parallel (0: all threads) and return their poses as seen, every `every[i]`-th step of trial i, to the
+    last that is finite."""
+
+@final
+class Walk:
+    """A run whose trial may be exchanged on the way, for a world whose laws change with time and place."""
+
+    def __new__(cls, trial: Trial, solver: Literal["reduced", "general"] = "reduced") -> Walk: ...
+    def advance(self, trial: Trial, steps: int) -> _Walked:
+        """Make `steps` steps of `trial`, whose ``step_s`` is the walk's, from where the walk is."""
 
 def step(
     trial: Trial,

@@ -29,19 +29,24 @@ _NAMES = {
     "vertex coordinate": "robot.vertices_m",
     "mass_kg": "robot.mass_kg",
     "magnetic moment": "robot.magnetization_A_per_m",
+    "center_of_mass_m": "robot.center_of_mass_m",
     "friction_coefficient": "substrate.friction_coefficient",
     "friction_ellipsoid": "substrate.friction_ellipsoid",
     "adhesion_N_per_m2": "substrate.adhesion_N_per_m2",
     "electrostatic_force_N": "substrate.electrostatic_force_N",
     "line_contact_width_m": "substrate.line_contact_width_m",
+    "compliance_m_per_N": "substrate.compliance_m_per_N",
     "strength_T": "field.strength_T",
     "frequency_Hz": "field.frequency_Hz",
     "rotation_axis": "field.rotation_axis",
     "initial_direction": "field.initial_direction",
+    "quadrature_ratio": "field.quadrature_ratio",
+    "phase_error_deg": "field.phase_error_deg",
     "direction": "field.direction",
     "time_s": "field.time_s",
     "the field's table": "field.field_T",
     "incline_deg": "run.incline_deg",
+    "side_incline_deg": "run.side_incline_deg",
     "gravity_m_per_s2": "run.gravity_m_per_s2",
     "duration_s": "run.duration_s",
     "step_s": "run.step_s",
@@ -52,6 +57,19 @@ _NAMES = {
     "magnetic_torque": "model.magnetic_torque",
     "adhesion_acts_at": "model.adhesion_acts_at",
     "adhesion_enters": "model.adhesion_enters",
+    **{name: f"relief.{name}" for name in ("wavelength_m", "cosine_m", "sine_m")},
+    **{
+        name: f"surroundings.{name}"
+        for name in (
+            "force_N",
+            "torque_N_m",
+            "translational_drag_N_s_per_m",
+            "rotational_drag_N_m_s",
+            "sheet_conductance_S",
+            "wrench_time_s",
+            "wrench_N_N_m",
+        )
+    },
 }
 # A whole message: its key, what was found, what was expected.
 _MESSAGES = [
@@ -62,6 +80,8 @@ _MESSAGES = [
      "points of a thickness of {0}, which are flat", "{1}"),
     (r"the centre of mass \(the origin\) lies (.*) m outside the hull or on its boundary", "robot.vertices_m",
      "the origin {0} m outside the hull or on its boundary", "the centre of mass, which is the origin, inside"),
+    (r"center_of_mass_m lies (.*), expected inside", "robot.center_of_mass_m", "a point {0}", "one inside the body"),
+    (r"row (.*) of wrench_time_s is at (.*), expected (.*)", "surroundings.wrench_time_s", "row {0} at {1}", "{2}"),
     (r"no consistent convex hull was found for (.*)", "robot.vertices_m",
      "no consistent convex hull for {0}", "points of a convex body"),
     (r"rotation_axis and initial_direction have cosine (.*), expected .*", "field.initial_direction",
@@ -72,6 +92,7 @@ _MESSAGES = [
     (r"the run of (.*) has (.*), expected (.*)", "run.duration_s", "{0} in {1}", "{2}"),
     (r"position_m puts (.*), expected it (.*)", "initial.position_m", "a position that puts {0}", "one {1}"),
     (r"(.*?) has length (.*), expected (.*)", None, "a length of {1}", "{2}"),
+    (r"(.*?) has (.* entries), expected (.*)", None, "{1}", "{2}"),
     (r"(.*?) is (.*?), expected (.*)", None, "{1}", "{2}"),
 ]  # fmt: skip
 

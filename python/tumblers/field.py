@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from math import radians
 from pathlib import Path
 from typing import ClassVar
 
@@ -20,7 +21,7 @@ _COVER = 1e-9
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RotatingField:
-    """B(t) = B [b0 cos ωt + (a × b0) sin ωt].
+    """B(t) = B [b0 cos ωt + ρ (a × b0) sin(ωt + δ)].
 
     Attributes
     ----------
@@ -28,6 +29,8 @@ class RotatingField:
         B, T, and ω/2π, Hz.
     rotation_axis, initial_direction
         a and b0, at right angles, normalised. The defaults roll the robot towards +y.
+    quadrature_ratio, phase_error_deg
+        ρ and δ, degrees: what the second phase has too much of. At 1 and 0 the field turns on a circle.
 
     Raises
     ------
@@ -40,6 +43,8 @@ class RotatingField:
     frequency_Hz: float
     rotation_axis: Vector = (-1.0, 0.0, 0.0)
     initial_direction: Vector = (0.0, 1.0, 0.0)
+    quadrature_ratio: float = 1.0
+    phase_error_deg: float = 0.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "strength_T", number("field.strength_T", self.strength_T, least=0.0))
@@ -52,10 +57,19 @@ class RotatingField:
             raise InputError("field.initial_direction", found, "one at right angles to rotation_axis")
         object.__setattr__(self, "rotation_axis", a)
         object.__setattr__(self, "initial_direction", b)
+        object.__setattr__(self, "quadrature_ratio", number("field.quadrature_ratio", self.quadrature_ratio, least=0.0))
+        object.__setattr__(self, "phase_error_deg", number("field.phase_error_deg", self.phase_error_deg))
 
     def core(self) -> _core.Field:
         """Return the native field."""
-        return _core.Field.rotating(self.strength_T, self.frequency_Hz, self.rotation_axis, self.initial_direction)
+        return _core.Field.rotating(
+            self.strength_T,
+            self.frequency_Hz,
+            self.rotation_axis,
+            self.initial_direction,
+            self.quadrature_ratio,
+            radians(self.phase_error_deg),
+        )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -8,7 +8,7 @@ from math import cos, fmod, radians, sin
 from typing import Literal, Self, get_args
 
 from . import _core
-from .check import Vector, choice, direction, number
+from .check import Vector, choice, direction, number, vector
 from .core_errors import core_error
 from .errors import InputError, show
 from .section import as_section, known_keys, require_table, required_keys
@@ -39,6 +39,9 @@ class Robot:
         Instead of the axis: u = (sin θ2 sin θ1, cos θ1, cos θ2 sin θ1), degrees.
     draft_deg, draft_model
         Inward draft of the sides, degrees, and how the slanted faces of the spiked shapes take it.
+    center_of_mass_m
+        Where the mass centre is, from the body's geometric centre, body frame, m. The inertia about the mass centre is
+        that of the homogeneous body wherever it is.
 
     Raises
     ------
@@ -56,6 +59,7 @@ class Robot:
     theta2_deg: float | None = None
     draft_deg: float = 0.0
     draft_model: DraftModel = "geometric"
+    center_of_mass_m: Vector = (0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
         def put(name: str, value: object) -> None:
@@ -83,6 +87,7 @@ class Robot:
             put("magnetization_axis", direction("robot.magnetization_axis", self.magnetization_axis))
         put("draft_deg", number("robot.draft_deg", self.draft_deg, least=0.0, below=90.0))
         choice("robot.draft_model", self.draft_model, get_args(DraftModel))
+        put("center_of_mass_m", vector("robot.center_of_mass_m", self.center_of_mass_m))
 
     @classmethod
     def from_table(cls, value: object, section: str = "robot") -> Self:
@@ -167,9 +172,10 @@ class Robot:
         Raises
         ------
         InputError
-            A hull without volume or not around its centre of mass, or a draft that makes a face vanish.
+            A hull without volume or not around its centre of mass, a draft that makes a face vanish, or a centre of
+            mass outside the body.
         """
-        return _body(self.shape, self.draft_deg, self.draft_model)
+        return _body(self.shape, self.draft_deg, self.draft_model, self.center_of_mass_m)
 
 
 def _sin_cos(angle_deg: float) -> tuple[float, float]:
@@ -182,9 +188,10 @@ def _sin_cos(angle_deg: float) -> tuple[float, float]:
 
 
 @lru_cache(maxsize=256)
-def _body(shape: Shape, draft_deg: float, draft_model: DraftModel) -> _core.Body:
+def _body(shape: Shape, draft_deg: float, draft_model: DraftModel, center_of_mass_m: Vector) -> _core.Body:
     try:
-        return shape.body(radians(draft_deg), draft_model == "as_released")
+        body = shape.body(radians(draft_deg), draft_model == "as_released")
+        return body.with_center_of_mass(center_of_mass_m) if any(center_of_mass_m) else body
     except InputError:
         raise
     except ValueError as error:

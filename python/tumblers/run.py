@@ -1,4 +1,4 @@
-"""`Run`: the incline, the time and the step."""
+"""`Run`: the inclines, the time and the step."""
 
 from __future__ import annotations
 
@@ -27,6 +27,8 @@ class Run:
         Time of the run and of one step, s. A duration that is not a whole number of steps is covered in whole steps.
     incline_deg
         Slope of the substrate along +y, degrees.
+    side_incline_deg
+        Slope of the substrate along +x, degrees.
     output_every_s
         Time between two rows of the result, a multiple of the step, s; every step if None.
     gravity_m_per_s2
@@ -43,6 +45,7 @@ class Run:
     incline_deg: float = 0.0
     output_every_s: float | None = None
     gravity_m_per_s2: float = 9.8
+    side_incline_deg: float = 0.0
 
     def __post_init__(self) -> None:
         def put(name: str, value: float) -> None:
@@ -50,7 +53,8 @@ class Run:
 
         put("duration_s", number("run.duration_s", self.duration_s, above=0.0))
         put("step_s", number("run.step_s", self.step_s, above=0.0))
-        put("incline_deg", number("run.incline_deg", self.incline_deg, above=-90.0, below=90.0))
+        for name in ("incline_deg", "side_incline_deg"):
+            put(name, number(f"run.{name}", getattr(self, name), above=-90.0, below=90.0))
         put("gravity_m_per_s2", number("run.gravity_m_per_s2", self.gravity_m_per_s2, least=0.0))
         ratio = self.duration_s / self.step_s
         if self.step_s > self.duration_s:

@@ -2,26 +2,32 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from dataclasses import field as attribute
 from math import radians
 from os import PathLike
 from pathlib import Path
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from . import _core
 from .atomic import write_files
+from .camera import Camera
+from .check import sequence
 from .core_errors import core_error
-from .effect import refuse_effects
 from .errors import InputError, show, unreadable
 from .field import Field, RotatingField, TableField, field_from_table, field_to_table
 from .initial import Initial
 from .model import Model
+from .relief import Relief
 from .robot import Robot
 from .run import Run
-from .section import as_section, known_keys, read_section, write_section
+from .section import as_section, known_keys, read_section, write_entry, write_section
 from .substrate import Substrate
+from .surroundings import Surroundings
 from .toml import parse_toml
+
+if TYPE_CHECKING:
+    from .effects.base import Effect
 
 __all__ = ["FORMAT", "Scenario"]
 
@@ -34,7 +40,12 @@ _PARTS: dict[str, Any] = {
     "run": Run,
     "model": Model,
     "initial": Initial,
+    "relief": Relief,
+    "surroundings": Surroundings,
+    "camera": Camera,
 }
+# These are written only where they say something.
+_EXTRAS = ("initial", "relief", "surroundings", "camera")
 # A cycle of the field that is cut into fewer steps is another motion.
 _STEPS_PER_CYCLE = 20
 
@@ -49,6 +60,10 @@ class Scenario:
         Its parts.
     model, initial
         The model's switches and the state at the start.
+    relief, surroundings, camera
+        The substrate's heights, what else acts on the robot, and how the run is seen.
+    effects
+        Causes of a gap between model and measurement, each of which edits the scenario, in their order.
 
     Raises
     ------
@@ -63,11 +78,16 @@ class Scenario:
     run: Run
     model: Model = attribute(default_factory=Model)
     initial: Initial = attribute(default_factory=Initial)
+    relief: Relief = attribute(default_factory=Relief)
+    surroundings: Surroundings = attribute(default_factory=Surroundings)
+    camera: Camera = attribute(default_factory=Camera)
+    effects: tuple[Effect, ...] = ()
 
     def __post_init__(self) -> None:
         for name, kind in _PARTS.items():
             if not isinstance(getattr(self, name), kind):
                 raise InputError(name, show(getattr(self, name)), f"a {name.capitalize()}")
+        object.__setattr__(self, "effects", _checked_effects(self.effects))
         if isinstance(self.field, TableField):
             self.field.covers(self.run.duration_s)
         if isinstance(self.field, RotatingField):
@@ -121,8 +141,7 @@ class Scenario:
         table = parse_toml(text)
         if "format" in table and table["format"] != FORMAT:
             raise InputError("format", show(table["format"]), f"'{FORMAT}'")
-        known_keys("", table, [*_REQUIRED, "model", "initial", "effect"], _REQUIRED)
-        refuse_effects(table.get("effect", []))
+        known_keys("", table, [*_REQUIRED, "model", *_EXTRAS, "effect"], _REQUIRED)
         scenario = cls(
             robot=Robot.from_table(table["robot"]),
             substrate=read_section(Substrate, "substrate", table["substrate"]),
@@ -130,6 +149,10 @@ class Scenario:
             run=read_section(Run, "run", table["run"]),
             model=read_section(Model, "model", table.get("model", {})),
             initial=read_section(Initial, "initial", table.get("initial", {})),
+            relief=read_section(Relief, "relief", table.get("relief", {})),
+            surroundings=read_section(Surroundings, "surroundings", table.get("surroundings", {})),
+            camera=read_section(Camera, "camera", table.get("camera", {})),
+            effects=_effects_from(table["effect"]) if "effect" in table else (),
         )
         scenario.trial()
         return scenario
@@ -143,9 +166,13 @@ class Scenario:
             "run": as_section(self.run),
             "model": as_section(self.model),
         }
-        if self.initial != Initial():
-            parts["initial"] = as_section(self.initial)
-        return "\n".join([f'format = "{FORMAT}"\n', *(write_section(name, part) for name, part in parts.items())])
+        for name in _EXTRAS:
+            part = getattr(self, name)
+            if part != _PARTS[name]():
+                parts[name] = as_section(part)
+        written = [write_section(name, part) for name, part in parts.items()]
+        written += [write_entry("effect", effect.to_table()) for effect in self.effects]
+        return "\n".join([f'format = "{FORMAT}"\n', *written])
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write the scenario to a TOML file, whole or not at all.
@@ -162,15 +189,31 @@ class Scenario:
         """
         write_files({Path(path): self.to_toml().encode()})
 
+    def effective(self) -> Scenario:
+        """Return the scenario that every effect has edited, in their order, and that has none left.
+
+        Raises
+        ------
+        InputError
+            What an effect makes of its part is refused.
+        """
+        scenario: Scenario = self
+        for effect in self.effects:
+            scenario = effect.edit(scenario)
+        return replace(scenario, effects=()) if scenario.effects else scenario
+
     def trial(self) -> _core.Trial:
-        """Return the native trial.
+        """Return the native trial of the effective scenario.
 
         Raises
         ------
         InputError
             What only the parts together show, such as a step beyond the stability bound of ``start_of_step``.
         """
-        robot, substrate, run = self.robot, self.substrate, self.run
+        scenario = self.effective()
+        robot, substrate, run = scenario.robot, scenario.substrate, scenario.run
+        model, initial = scenario.model, scenario.initial
+        relief, surroundings = scenario.relief, scenario.surroundings
         body = robot.body()
         try:
             return _core.Trial(
@@ -182,20 +225,52 @@ class Scenario:
                 adhesion_N_per_m2=substrate.adhesion_N_per_m2,
                 electrostatic_force_N=substrate.electrostatic_force_N,
                 line_contact_width_m=substrate.line_contact_width_m,
-                field=self.field.core(),
+                compliance_m_per_N=substrate.compliance_m_per_N,
+                field=scenario.field.core(),
                 incline_rad=radians(run.incline_deg),
+                side_incline_rad=radians(run.side_incline_deg),
                 gravity_m_per_s2=run.gravity_m_per_s2,
                 duration_s=run.duration_s,
                 step_s=run.step_s,
-                magnetic_torque=self.model.magnetic_torque,
-                adhesion_acts_at=self.model.adhesion_acts_at,
-                adhesion_enters=self.model.adhesion_enters,
-                position_m=self.initial.position_m,
-                orientation=self.initial.orientation,
-                linear_velocity_m_per_s=self.initial.linear_velocity_m_per_s,
-                angular_velocity_rad_per_s=self.initial.angular_velocity_rad_per_s,
+                magnetic_torque=model.magnetic_torque,
+                adhesion_acts_at=model.adhesion_acts_at,
+                adhesion_enters=model.adhesion_enters,
+                position_m=initial.position_m,
+                orientation=initial.orientation,
+                linear_velocity_m_per_s=initial.linear_velocity_m_per_s,
+                angular_velocity_rad_per_s=initial.angular_velocity_rad_per_s,
+                relief_wavelength_m=relief.wavelength_m,
+                relief_cosine_m=relief.cosine_m,
+                relief_sine_m=relief.sine_m,
+                force_N=surroundings.force_N,
+                torque_N_m=surroundings.torque_N_m,
+                translational_drag_N_s_per_m=surroundings.translational_drag_N_s_per_m,
+                rotational_drag_N_m_s=surroundings.rotational_drag_N_m_s,
+                sheet_conductance_S=surroundings.sheet_conductance_S,
+                wrench_time_s=surroundings.wrench_time_s,
+                wrench_N_N_m=surroundings.wrench_N_N_m,
             )
         except InputError:
             raise
         except ValueError as error:
             raise core_error(error) from None
+
+
+def _checked_effects(value: object) -> tuple[Effect, ...]:
+    if value == ():
+        return ()
+    # The effects edit scenarios, so their package imports this module.
+    from .effects.base import Effect
+
+    def effect(key: str, entry: object) -> Effect:
+        if not isinstance(entry, Effect):
+            raise InputError(key, show(entry), "an Effect")
+        return entry
+
+    return sequence("effects", value, "a list of effects", effect)
+
+
+def _effects_from(value: object) -> tuple[Effect, ...]:
+    from .effects.catalogue import effects_from_tables
+
+    return effects_from_tables(value)

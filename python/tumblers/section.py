@@ -12,7 +12,7 @@ from .errors import InputError, show
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
-__all__ = ["as_section", "known_keys", "read_section", "require_table", "required_keys", "write_section"]
+__all__ = ["as_section", "known_keys", "read_section", "require_table", "required_keys", "write_entry", "write_section"]
 
 T = TypeVar("T", bound="DataclassInstance")
 
@@ -71,7 +71,16 @@ def as_section(instance: DataclassInstance) -> dict[str, object]:
 
 def write_section(name: str, table: Mapping[str, object]) -> str:
     """Return a table of numbers, words and (nested) lists of numbers as TOML."""
-    return "\n".join([f"[{name}]", *(f"{key} = {_toml(value)}" for key, value in table.items())]) + "\n"
+    return _titled(f"[{name}]", table)
+
+
+def write_entry(name: str, table: Mapping[str, object]) -> str:
+    """Return one table of the array of tables `name` as TOML."""
+    return _titled(f"[[{name}]]", table)
+
+
+def _titled(title: str, table: Mapping[str, object]) -> str:
+    return "\n".join([title, *(f"{key} = {_toml(value)}" for key, value in table.items())]) + "\n"
 
 
 def _toml(value: object) -> str:
@@ -80,6 +89,6 @@ def _toml(value: object) -> str:
             return f'"{value}"'
         case float():
             return repr(value)
-        case tuple():
+        case tuple() | list():
             return f"[{', '.join(_toml(entry) for entry in value)}]"
     raise TypeError(f"no TOML for {value!r}")

@@ -1,4 +1,4 @@
-"""`Substrate`: friction, adhesion and electrostatic attraction."""
+"""`Substrate`: friction, adhesion, electrostatic attraction and compliance."""
 
 from __future__ import annotations
 
@@ -7,6 +7,14 @@ from dataclasses import dataclass
 from .check import Vector, number, vector
 
 __all__ = ["Substrate"]
+
+_NOT_NEGATIVE = (
+    "friction_coefficient",
+    "adhesion_N_per_m2",
+    "electrostatic_force_N",
+    "line_contact_width_m",
+    "compliance_m_per_N",
+)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -25,6 +33,8 @@ class Substrate:
         F_elect of the paper, N, towards the substrate.
     line_contact_width_m
         Width of the strip that counts as area where a line touches, m; 0 is the paper's model.
+    compliance_m_per_N
+        How far the plane yields per normal force, m/N; 0 is the paper's rigid plane.
 
     Raises
     ------
@@ -37,9 +47,10 @@ class Substrate:
     adhesion_N_per_m2: float = 0.0
     electrostatic_force_N: float = 0.0
     line_contact_width_m: float = 0.0
+    compliance_m_per_N: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in ("friction_coefficient", "adhesion_N_per_m2", "electrostatic_force_N", "line_contact_width_m"):
+        for name in _NOT_NEGATIVE:
             object.__setattr__(self, name, number(f"substrate.{name}", getattr(self, name), least=0.0))
         ellipsoid = vector("substrate.friction_ellipsoid", self.friction_ellipsoid)
         for i, axis in enumerate(ellipsoid):

@@ -14,6 +14,7 @@ FIELDS: dict[str, Field] = {
     "rotating about an axis": RotatingField(
         strength_T=0.02, frequency_Hz=12.3, rotation_axis=(1.0, 2.0, -1.0), initial_direction=(1.0, 0.0, 1.0)
     ),
+    "on an ellipse": RotatingField(strength_T=0.02, frequency_Hz=3.0, quadrature_ratio=0.7, phase_error_deg=-20.0),
     "static": StaticField(strength_T=0.015, direction=(1.0, -2.0, 0.5)),
     "table": TableField(
         time_s=(0.0, 0.1, 0.15, 1.0), field_T=((0, 0, 0.01), (0, 0.01, 0), (0.02, 0, 0), (0, 0, -0.01))

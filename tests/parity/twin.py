@@ -39,6 +39,11 @@ class Twin:
 
 @lru_cache(maxsize=64)
 def reference_body(robot: Robot) -> reference.Body:
+    body = _homogeneous(robot)
+    return body.with_centre_of_mass(np.array(robot.center_of_mass_m)) if any(robot.center_of_mass_m) else body
+
+
+def _homogeneous(robot: Robot) -> reference.Body:
     shape, draft, model = robot.shape, radians(robot.draft_deg), robot.draft_model
     match shape:
         case Cuboid():
@@ -62,7 +67,8 @@ def reference_field(field: Field) -> reference.RotatingField | reference.StaticF
     match field:
         case RotatingField():
             axes = (np.array(field.rotation_axis), np.array(field.initial_direction))
-            return reference.RotatingField(field.strength_T, field.frequency_Hz, *axes)
+            second = (field.quadrature_ratio, radians(field.phase_error_deg))
+            return reference.RotatingField(field.strength_T, field.frequency_Hz, *axes, *second)
         case StaticField():
             return reference.StaticField(field.strength_T * np.array(field.direction))
         case _:
@@ -71,6 +77,7 @@ def reference_field(field: Field) -> reference.RotatingField | reference.StaticF
 
 def reference_trial(scenario: Scenario) -> reference.Trial:
     robot, substrate, model = scenario.robot, scenario.substrate, scenario.model
+    relief, around = scenario.relief, scenario.surroundings
     return reference.Trial(
         body=reference_body(robot),
         mass=robot.total_mass_kg,
@@ -88,4 +95,16 @@ def reference_trial(scenario: Scenario) -> reference.Trial:
         adhesion_acts_at=model.adhesion_acts_at,
         adhesion_enters=model.adhesion_enters,
         gravity=scenario.run.gravity_m_per_s2,
+        side_incline_rad=radians(scenario.run.side_incline_deg),
+        compliance=substrate.compliance_m_per_N,
+        relief=reference.Relief(relief.wavelength_m, np.array(relief.cosine_m), np.array(relief.sine_m)),
+        surroundings=reference.Surroundings(
+            np.array(around.force_N),
+            np.array(around.torque_N_m),
+            around.translational_drag_N_s_per_m,
+            around.rotational_drag_N_m_s,
+            around.sheet_conductance_S,
+            np.array(around.wrench_time_s),
+            np.array(around.wrench_N_N_m).reshape(-1, 6),
+        ),
     )

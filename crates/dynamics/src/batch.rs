@@ -4,6 +4,8 @@
 
 use crate::error::Diverged;
 use crate::metrics::Gauge;
+use crate::recording::Ended;
+use crate::rollout::Rollout;
 use crate::{Metrics, SolverKind, Stepper, Trial};
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
@@ -15,9 +17,9 @@ const STEPS_BETWEEN_LOOKS: u64 = 64;
 
 /// What became of one trial of a batch.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Outcome {
+pub enum Outcome<T> {
     /// It ran to its end.
-    Done(Metrics),
+    Done(T),
     /// It left the finite numbers, or met a defect of this library; with the message.
     Failed(String),
     /// The batch was stopped before its end.
@@ -33,36 +35,87 @@ pub struct Control {
     pub finished: AtomicUsize,
 }
 
-/// Runs `trials` on `threads` threads (0: one a core).
-pub fn sweep(trials: &[Trial], threads: usize, control: &Control) -> Result<Vec<Outcome>, rayon::ThreadPoolBuildError> {
-    let pool = ThreadPoolBuilder::new().num_threads(threads).build()?;
-    Ok(pool.install(|| {
-        trials
-            .par_iter()
-            .with_max_len(1)
-            .map(|trial| {
-                let outcome = catch_unwind(AssertUnwindSafe(|| run(trial, control)));
-                control.finished.fetch_add(1, Ordering::Relaxed);
-                outcome.unwrap_or_else(|panic| Outcome::Failed(message(&*panic)))
-            })
-            .collect()
-    }))
+/// Runs `trials` on `threads` threads (0: one a core) and keeps their metrics.
+pub fn sweep(
+    trials: &[Trial],
+    threads: usize,
+    control: &Control,
+) -> Result<Vec<Outcome<Metrics>>, rayon::ThreadPoolBuildError> {
+    each(trials, threads, control, |trial, _| {
+        let mut gauge = Gauge::new(trial);
+        match run(trial, control, |stepper| gauge.read(stepper, trial.step())) {
+            Ok(()) => Ok(gauge.metrics()),
+            Err(Ended::Diverged(diverged)) => Err(Outcome::Failed(diverged.to_string())),
+            Err(Ended::Stopped) => Err(Outcome::Stopped),
+        }
+    })
 }
 
-fn run(trial: &Trial, control: &Control) -> Outcome {
+/// Runs `trials` on `threads` threads (0: one a core) and keeps every `every[i]`-th pose of the trial `i`, to the last that is
+/// finite.
+pub fn rollouts(
+    trials: &[Trial],
+    every: &[u64],
+    threads: usize,
+    control: &Control,
+) -> Result<Vec<Outcome<Rollout>>, rayon::ThreadPoolBuildError> {
+    each(trials, threads, control, |trial, i| {
+        let every = every.get(i).copied().unwrap_or(1).max(1);
+        let mut rollout = Rollout::with_rows(trial.steps() / every + 2);
+        rollout.push(trial, &Stepper::new(trial, SolverKind::Reduced));
+        let mut done = 0;
+        let ended = run(trial, control, |stepper| {
+            done += 1;
+            if done % every == 0 || done == trial.steps() {
+                rollout.push(trial, stepper);
+            }
+            rollout.unconverged_steps += u64::from(!stepper.solution().converged);
+        });
+        match ended {
+            // A robot that has gone out of all bounds has been seen until then.
+            Err(Ended::Diverged(_)) | Ok(()) => Ok(rollout),
+            Err(Ended::Stopped) => Err(Outcome::Stopped),
+        }
+    })
+}
+
+/// What `run_one` makes of each trial, in their order.
+fn each<T: Send>(
+    trials: &[Trial],
+    threads: usize,
+    control: &Control,
+    run_one: impl Fn(&Trial, usize) -> Result<T, Outcome<T>> + Sync,
+) -> Result<Vec<Outcome<T>>, rayon::ThreadPoolBuildError> {
+    let guarded = |(i, trial): (usize, &Trial)| {
+        let outcome = catch_unwind(AssertUnwindSafe(|| run_one(trial, i)));
+        control.finished.fetch_add(1, Ordering::Relaxed);
+        match outcome {
+            Ok(Ok(done)) => Outcome::Done(done),
+            Ok(Err(ended)) => ended,
+            Err(panic) => Outcome::Failed(message(&*panic)),
+        }
+    };
+    if threads == 1 {
+        return Ok(trials.iter().enumerate().map(|(i, trial)| guarded((i, trial))).collect());
+    }
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build()?;
+    Ok(pool.install(|| trials.par_iter().enumerate().with_max_len(1).map(guarded).collect()))
+}
+
+/// Runs `trial` to its end, and shows `watch` every step.
+fn run(trial: &Trial, control: &Control, mut watch: impl FnMut(&Stepper)) -> Result<(), Ended> {
     let mut stepper = Stepper::new(trial, SolverKind::Reduced);
-    let mut gauge = Gauge::new(trial);
     for done in 0..trial.steps() {
         if done % STEPS_BETWEEN_LOOKS == 0 && control.stop.load(Ordering::Relaxed) {
-            return Outcome::Stopped;
+            return Err(Ended::Stopped);
         }
         stepper.advance();
         if !stepper.is_finite() {
-            return Outcome::Failed(Diverged { time: stepper.time() }.to_string());
+            return Err(Ended::Diverged(Diverged { time: stepper.time() }));
         }
-        gauge.read(&stepper, trial.step());
+        watch(&stepper);
     }
-    Outcome::Done(gauge.metrics())
+    Ok(())
 }
 
 fn message(panic: &(dyn std::any::Any + Send)) -> String {

@@ -26,6 +26,10 @@ pub enum Invalid {
     TableSpan { first: f64, last: f64, needed: f64 },
     #[error("the field's table has {found} rows, expected at least {expected}")]
     TableLength { found: usize, expected: usize },
+    #[error("row {row} of wrench_time_s is at {found} s, expected a time after {before} s")]
+    WrenchOrder { row: usize, found: f64, before: f64 },
+    #[error("{name} has {found} entries, expected {expected}")]
+    Lengths { name: &'static str, found: usize, expected: usize },
     #[error("time_s is {found}, expected a multiple of step_s {step}")]
     NotAStep { found: f64, step: f64 },
     #[error("position_m puts the body {depth} m into the substrate, expected it on or above the substrate")]

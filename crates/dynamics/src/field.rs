@@ -12,8 +12,8 @@ const RIGHT_ANGLE: f64 = 1e-6;
 #[derive(Debug, Clone)]
 #[allow(missing_docs)] // the formulas say what each field is
 pub enum Field {
-    /// `B(t) = B [b0 cos ωt + (a × b0) sin ωt]`.
-    Rotating { strength: f64, frequency: f64, initial: Vec3, quadrature: Vec3 },
+    /// `B(t) = B [i cos ωt + q sin ωt]`; `greatest` is the longer half axis of that ellipse over `B`.
+    Rotating { strength: f64, frequency: f64, initial: Vec3, quadrature: Vec3, greatest: f64 },
     /// `B(t) = B b`.
     Static { field: Vec3 },
     /// Linear between rows.
@@ -21,7 +21,8 @@ pub enum Field {
 }
 
 impl Field {
-    /// `strength` in T, `frequency` in Hz, rotation axis `a` and initial direction `b0`.
+    /// `B(t) = B [b0 cos ωt + (a × b0) sin ωt]`, `strength` in T, `frequency` in Hz, rotation axis `a` and initial direction
+    /// `b0`.
     pub fn rotating(strength: f64, frequency: f64, axis: Vec3, initial: Vec3) -> Result<Self, Invalid> {
         not_negative("strength_T", strength)?;
         not_negative("frequency_Hz", frequency)?;
@@ -31,7 +32,26 @@ impl Field {
         if cosine.abs() > RIGHT_ANGLE {
             return Err(Invalid::NotOrthogonal { found: cosine });
         }
-        Ok(Self::Rotating { strength, frequency, initial, quadrature: axis.cross(&initial) })
+        Ok(Self::Rotating { strength, frequency, initial, quadrature: axis.cross(&initial), greatest: 1.0 })
+    }
+
+    /// `B(t) = B [b0 cos ωt + ρ (a × b0) sin(ωt + δ)]`: a rotating field whose second phase has the amplitude `ratio` of the
+    /// first and leads by `phase` (rad). Another field stays what it is.
+    pub fn with_quadrature(self, ratio: f64, phase: f64) -> Result<Self, Invalid> {
+        not_negative("quadrature_ratio", ratio)?;
+        finite("phase_error_deg", phase)?;
+        match self {
+            Self::Rotating { strength, frequency, initial, quadrature, .. } if ratio != 1.0 || phase != 0.0 => {
+                let (sin, cos) = phase.sin_cos();
+                let initial = initial + quadrature * (ratio * sin);
+                let quadrature = quadrature * (ratio * cos);
+                // The half axes are the singular values of [i q].
+                let (one, other, mixed) = (initial.norm_squared(), quadrature.norm_squared(), initial.dot(&quadrature));
+                let greatest = (0.5 * (one + other) + (0.5 * (one - other)).hypot(mixed)).sqrt();
+                Ok(Self::Rotating { strength, frequency, initial, quadrature, greatest })
+            }
+            other => Ok(other),
+        }
     }
 
     /// A constant field of `strength` (T) along `along`.
@@ -61,7 +81,7 @@ impl Field {
     #[inline]
     pub fn at(&self, t: f64) -> Vec3 {
         match self {
-            Self::Rotating { strength, frequency, initial, quadrature } => {
+            Self::Rotating { strength, frequency, initial, quadrature, .. } => {
                 let (sin, cos) = (TAU * frequency * t).sin_cos();
                 (initial * cos + quadrature * sin) * *strength
             }
@@ -83,7 +103,7 @@ impl Field {
     /// The field's greatest strength, T.
     pub fn greatest_strength(&self) -> f64 {
         match self {
-            Self::Rotating { strength, .. } => *strength,
+            Self::Rotating { strength, greatest, .. } => strength * greatest,
             Self::Static { field } => field.norm(),
             Self::Table { fields, .. } => fields.iter().map(|field| field.norm()).fold(0.0, f64::max),
         }

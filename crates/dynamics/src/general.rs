@@ -134,10 +134,10 @@ fn start_on(step: &Step, support: Support, touching: bool, solution: &mut StepSo
     solution.angular = step.state.angular;
     solution.ecp = ecp;
     solution.normal = if touching { step.normal_impulse(step.load.z.abs()) } else { 0.0 };
+    solution.ecp_substrate = Vec3::new(ecp.x, ecp.y, 0.0 - step.yielded(solution.normal));
     set_friction(step, &arm, solution);
     let rotation = step.rotation;
     set_normal_cone(body, support, &(rotation.transpose() * arm), &down, solution);
-    solution.ecp_substrate = Vec3::new(ecp.x, ecp.y, 0.0);
 }
 
 /// The friction of the start: `p = -μp̄ E²u/σ`, `σ = |Eu|`, for the slip of the step before.
@@ -158,7 +158,7 @@ fn read_support(step: &Step, solution: &mut StepSolution) {
     let down = downward(&rotation);
     let (_, lowest) = step.body.lowest(&down);
     let height = step.state.position.z + step.h * solution.linear.z + (rotation * lowest).z;
-    solution.penetration = (-height).max(0.0);
+    solution.penetration = (-height - step.yielded(solution.normal)).max(0.0);
     let touches = solution.normal > REQUIRED * step.load_scale();
     solution.support = if touches { step.body.touching(&down, TOGETHER * step.size) } else { Support::None };
 }

@@ -25,27 +25,33 @@ pub mod problem;
 mod problem_jacobian;
 pub mod recording;
 pub mod reduced;
+pub mod relief;
 pub mod residual;
 pub mod robot;
+pub mod rollout;
 pub mod rotation;
 pub mod solution;
 pub mod state;
 pub mod step;
 pub mod stepper;
 pub mod substrate;
+pub mod surroundings;
 pub mod trial;
 
 pub use adhesion::Adhesion;
-pub use batch::{Outcome, sweep};
+pub use batch::{Outcome, rollouts, sweep};
 pub use error::Invalid;
 pub use field::Field;
 pub use metrics::Metrics;
 pub use model::{AdhesionActsAt, AdhesionEnters, MagneticTorque, Model};
+pub use relief::Relief;
 pub use robot::Robot;
+pub use rollout::Rollout;
 pub use solution::StepSolution;
 pub use state::State;
 pub use stepper::{SolverKind, Stepper};
 pub use substrate::Substrate;
+pub use surroundings::Surroundings;
 pub use trial::Trial;
 
 /// A vector of the substrate or of the body frame.

@@ -1,7 +1,7 @@
-//! The magnetic torque `T_m = M × B` and when in the step it is taken.
+//! The magnetic torque `T_m = M × B` and when in the step it is taken, with the torque that does not depend on the pose.
 
 use crate::rotation::{cayley, cayley_tangent};
-use crate::{Field, MagneticTorque, Mat3, Vec3};
+use crate::{MagneticTorque, Mat3, Vec3};
 
 /// `hT` as a function of the step's angular velocity: `h T = c + w M(αω) × B`, with `M(αω) = Cay(αω) M`.
 #[derive(Debug, Clone, Copy)]
@@ -19,31 +19,27 @@ pub struct TorqueLaw {
 }
 
 impl TorqueLaw {
-    /// The law for a body at `rotation`, spinning with `omega`, with `moment` in the body frame, at time `t`.
-    pub fn new(
-        when: MagneticTorque,
-        field: &Field,
-        moment: &Vec3,
-        rotation: &Mat3,
-        omega: &Vec3,
-        t: f64,
-        h: f64,
-    ) -> Self {
-        let moment = rotation * moment;
+    /// The law for a body that spins with `omega`, with `moment` in the substrate frame, at time `t` in the field `B(t)`.
+    pub fn new(when: MagneticTorque, field: impl Fn(f64) -> Vec3, moment: Vec3, omega: &Vec3, t: f64, h: f64) -> Self {
         match when {
             MagneticTorque::StartOfStep => {
-                let known = moment.cross(&field.at(t)) * h;
+                let known = moment.cross(&field(t)) * h;
                 Self { known, weight: 0.0, alpha: 0.0, moment, field: Vec3::zeros() }
             }
             MagneticTorque::EndOfStep => {
-                Self { known: Vec3::zeros(), weight: h, alpha: 0.5 * h, moment, field: field.at(t + h) }
+                Self { known: Vec3::zeros(), weight: h, alpha: 0.5 * h, moment, field: field(t + h) }
             }
             MagneticTorque::Midpoint => {
                 let back = cayley(&(omega * (-0.25 * h))) * moment;
-                let known = back.cross(&field.at(t - 0.5 * h)) * (0.5 * h);
-                Self { known, weight: 0.5 * h, alpha: 0.25 * h, moment, field: field.at(t + 0.5 * h) }
+                let known = back.cross(&field(t - 0.5 * h)) * (0.5 * h);
+                Self { known, weight: 0.5 * h, alpha: 0.25 * h, moment, field: field(t + 0.5 * h) }
             }
         }
+    }
+
+    /// The law with an `impulse` (N m s) more.
+    pub fn with_impulse(self, impulse: Vec3) -> Self {
+        Self { known: self.known + impulse, ..self }
     }
 
     /// `hT` and `h ∂T/∂ω⁺`. From `d(M × B) = (dφ × M) × B = (M Bᵀ - (M·B) 1) dφ`.

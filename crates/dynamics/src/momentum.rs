@@ -1,9 +1,11 @@
-//! The change of angular momentum in a step, gyroscopic term included.
+//! The change of angular momentum in a step, gyroscopic term and what drag takes of it included.
 //!
 //! ```text
 //! start, end of step:   I^u (ω⁺ - ω) + h ω × I^u ω                 the paper's, explicit in the gyroscopic term
 //! midpoint:             C(ω⁺) I^u ω⁺ - C(ω)ᵀ I^u ω                 C(ω): the body's turn in half a step
 //! ```
+//!
+//! Drag adds `h D ω⁺`, implicit in every law.
 //!
 //! `C(ω⁺) I^u ω⁺` is the momentum in the middle of this step and `C(ω)ᵀ I^u ω` that in the middle of the last, for
 //! `C(ω)² = Cay(hω/2)` leaves `ω` as it is. In the air it is kept to rounding whatever `h|ω|` is, so that a body that
@@ -12,10 +14,16 @@
 use crate::rotation::cayley;
 use crate::{MagneticTorque, Mat3, Vec3};
 
-/// The change of angular momentum as a function of `ω⁺`.
+/// The change of angular momentum, and what drag takes, as a function of `ω⁺`.
 #[derive(Debug, Clone, Copy)]
-#[allow(missing_docs)] // the formulas say what each field is
-pub enum MomentumLaw {
+pub struct MomentumLaw {
+    kept: Kept,
+    /// `h D`.
+    drag: Option<Mat3>,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Kept {
     /// `I^u ω⁺ - k`.
     Explicit { known: Vec3 },
     /// `C(ω⁺) I^u ω⁺ - k`.
@@ -23,20 +31,32 @@ pub enum MomentumLaw {
 }
 
 impl MomentumLaw {
-    /// The law for a body of `inertia` that spins with `omega`.
-    pub fn new(when: MagneticTorque, inertia: &Mat3, omega: &Vec3, h: f64) -> Self {
+    /// The law for a body of `inertia` that spins with `omega`, with the torque per angular velocity `drag` against it.
+    pub fn new(when: MagneticTorque, inertia: &Mat3, omega: &Vec3, h: f64, drag: Option<&Mat3>) -> Self {
         let momentum = inertia * omega;
-        match when {
+        let kept = match when {
             MagneticTorque::StartOfStep | MagneticTorque::EndOfStep => {
-                Self::Explicit { known: momentum - omega.cross(&momentum) * h }
+                Kept::Explicit { known: momentum - omega.cross(&momentum) * h }
             }
-            MagneticTorque::Midpoint => Self::Midpoint { known: cayley(&half_turn(omega, h)).tr_mul(&momentum), h },
-        }
+            MagneticTorque::Midpoint => Kept::Midpoint { known: cayley(&half_turn(omega, h)).tr_mul(&momentum), h },
+        };
+        Self { kept, drag: drag.map(|drag| drag * h) }
     }
 
     /// The change and its derivative by `ω⁺`.
     #[inline]
     pub fn change(&self, inertia: &Mat3, omega: &Vec3) -> (Vec3, Mat3) {
+        let (change, by_omega) = self.kept.change(inertia, omega);
+        match &self.drag {
+            Some(drag) => (change + drag * omega, by_omega + drag),
+            None => (change, by_omega),
+        }
+    }
+}
+
+impl Kept {
+    #[inline]
+    fn change(&self, inertia: &Mat3, omega: &Vec3) -> (Vec3, Mat3) {
         match self {
             Self::Explicit { known } => (inertia * omega - known, *inertia),
             Self::Midpoint { known, h } => {
@@ -77,8 +97,10 @@ mod tests {
         #[test]
         fn the_derivative(w in prop::array::uniform3(-4.0..4.0f64), d in prop::array::uniform3(-1.0..1.0f64)) {
             let inertia = Mat3::new(2.0, 0.1, 0.0, 0.1, 0.7, -0.2, 0.0, -0.2, 1.5);
-            for when in [MagneticTorque::EndOfStep, MagneticTorque::Midpoint] {
-                let law = MomentumLaw::new(when, &inertia, &Vec3::new(1.0, -2.0, 0.5), 0.9);
+            let drag = Mat3::new(0.8, 0.1, 0.3, 0.1, 0.4, 0.0, 0.3, 0.0, 0.5);
+            let laws = [MagneticTorque::EndOfStep, MagneticTorque::Midpoint].map(|when| (when, None));
+            for (when, drag) in laws.into_iter().chain(laws.map(|(when, _)| (when, Some(&drag)))) {
+                let law = MomentumLaw::new(when, &inertia, &Vec3::new(1.0, -2.0, 0.5), 0.9, drag);
                 let (w, d, e) = (Vec3::from(w), Vec3::from(d), 1e-6);
                 let numeric = (law.change(&inertia, &(w + d * e)).0 - law.change(&inertia, &(w - d * e)).0) / (2.0 * e);
                 prop_assert!((numeric - law.change(&inertia, &w).1 * d).norm() < 1e-7);

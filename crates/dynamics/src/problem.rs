@@ -4,8 +4,8 @@
 //! `a1`, `r = a1 - q⁺`, `u = [W_t W_o W_r]ᵀV⁺`:
 //!
 //! ```text
-//! 0 = m (v⁺ - v) - [p_t, p_o, N] - h F_ext
-//! 0 = ΔL(ω⁺) - hT - r × [p_t, p_o, N] - p_r n
+//! 0 = m (v⁺ - v) + h k v⁺ - [p_t, p_o, N] - h F_ext
+//! 0 = ΔL(ω⁺) + h D ω⁺ - hT - r × [p_t, p_o, N] - p_r n
 //! 0 = a1 - a2 + l_k C_F
 //! 0 = C_F + l_{m+1} n
 //! 0 = μ e_j² p̄ u_j + p_j σ                      j = t, o, r
@@ -15,6 +15,8 @@
 //! 0 ≤ σ       ⊥ (μ p̄)² - Σ (p_j/e_j)² ≥ 0
 //! 0 ≤ p_n     ⊥ max_i f_i(a2) ≥ 0
 //! ```
+//!
+//! `g(a) = a_z + δ` with the plane yielded by `δ = c p_n/h`.
 //!
 //! The paper pairs `l_k ≥ 0` with `-f_k(a1) ≥ 0` too, although `k` is active by its definition. As a pair it lets `a1 = a2`
 //! lie below the surface `k`, with `l_k = 0`: the body sinks in. `f_k = 0` excludes that, and `l_k ≥ 0` follows from the last
@@ -225,7 +227,7 @@ impl<'a> StepProblem<'a> {
         for i in 0..self.surfaces() {
             out[self.slot(i)] = -self.value(i, &at, &at.arm) / step.size;
         }
-        out[plane_slot] = -at.ecp_substrate.z / step.size;
+        out[plane_slot] = -(at.ecp_substrate.z + step.yielded(at.normal)) / step.size;
         out[sigma_slot] = bound * bound - z[12] * z[12] - z[13] * z[13] - z[14] * z[14];
         out[normal_slot] = self.greatest(&at).1 / step.size;
     }

@@ -116,6 +116,7 @@ impl StepProblem<'_> {
             put_value_row(&mut out, (self.slot(i), 6), &(-gradient), &arm, &turn, travel);
         }
         out[(plane, 11)] -= 1.0;
+        out[(plane, normal)] -= step.yielding * impulse / step.size;
         out[(sigma, normal)] += 2.0 * bound * step.friction.slope();
         let (surface, _) = self.greatest(&at);
         let gradient = self.gradient(surface, &at, &at.arm_substrate);

@@ -10,15 +10,15 @@ use std::ops::ControlFlow;
 pub struct Recording {
     /// s.
     pub time: Vec<f64>,
-    /// Centre of mass, m.
+    /// Centre of mass as it is seen, m.
     pub position: Vec<[f64; 3]>,
-    /// `w, x, y, z`.
+    /// `w, x, y, z`, as it is seen.
     pub orientation: Vec<[f64; 4]>,
-    /// `v`, m/s.
+    /// `v`, m/s, in the frame of the tangent plane, as all that follows but the ECP.
     pub linear: Vec<[f64; 3]>,
     /// `ω`, rad/s.
     pub angular: Vec<[f64; 3]>,
-    /// `a1`, m.
+    /// `a1` as it is seen, m.
     pub ecp: Vec<[f64; 3]>,
     /// 0 airborne, 1 point, 2 line, 3 surface.
     pub contact_mode: Vec<i8>,
@@ -37,16 +37,22 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Appends the state of `stepper` and the last step, of length `h`, during which `adhesion` (N s) acted.
-    fn push(&mut self, stepper: &Stepper, h: f64, adhesion: f64) {
-        let (state, solution) = (stepper.state(), stepper.solution());
-        let q = state.orientation;
+    /// Appends the state of `stepper` on `trial` and the last step, during which `adhesion` (N s) acted.
+    fn push(&mut self, trial: &Trial, stepper: &Stepper, adhesion: f64) {
+        let (state, solution, h) = (stepper.state(), stepper.solution(), trial.step());
+        let (position, q) = trial.seen(state);
+        let relief = trial.relief();
+        let ecp = if relief.is_flat() {
+            solution.ecp
+        } else {
+            position + relief.tilt(position.y) * (solution.ecp - state.position)
+        };
         self.time.push(stepper.time());
-        self.position.push(state.position.into());
+        self.position.push(position.into());
         self.orientation.push([q.w, q.i, q.j, q.k]);
         self.linear.push(state.linear.into());
         self.angular.push(state.angular.into());
-        self.ecp.push(solution.ecp.into());
+        self.ecp.push(ecp.into());
         self.contact_mode.push(solution.patch.mode as i8);
         self.normal_force.push(solution.normal / h);
         self.friction_force.push((solution.friction / h).into());
@@ -78,7 +84,7 @@ pub fn record(
     let mut stepper = Stepper::new(trial, kind);
     let mut gauge = Gauge::new(trial);
     let mut recording = Recording::default();
-    recording.push(&stepper, h, stepper.adhesion().impulse);
+    recording.push(trial, &stepper, stepper.adhesion().impulse);
     for done in 1..=steps {
         let adhesion = stepper.adhesion().impulse;
         stepper.advance();
@@ -87,7 +93,7 @@ pub fn record(
         }
         gauge.read(&stepper, h);
         if done % every == 0 || done == steps {
-            recording.push(&stepper, h, adhesion);
+            recording.push(trial, &stepper, adhesion);
         }
         if watch(done).is_break() {
             return Err(Ended::Stopped);

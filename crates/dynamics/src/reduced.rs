@@ -1,15 +1,17 @@
 //! The reduced problem of a step, for a support that is taken as given.
 //!
-//! Unknowns `x = [ω⁺; p_1..p_k; φ]` with `φ = E⁻¹[p_t, p_o, p_r]`; `v⁺ = v + (h F_ext + [p_t, p_o, N])/m`; `N = Σ p_j`:
+//! Unknowns `x = [ω⁺; p_1..p_k; φ]` with `φ = E⁻¹[p_t, p_o, p_r]`; `v⁺ = (m v + h F_ext + [p_t, p_o, N])/(m + hk)`;
+//! `N = Σ p_j`:
 //!
 //! ```text
-//! A:  ΔL(ω⁺) - hT - Σ p_j y_j × n - r × (p_t, p_o, 0) - p_r n = 0
-//! B:  q_z + h v⁺_z + n·y_j = 0                                              j = 1..k
+//! A:  ΔL(ω⁺) + h D ω⁺ - hT - Σ p_j y_j × n - r × (p_t, p_o, 0) - p_r n = 0
+//! B:  q_z + h v⁺_z + δ + n·y_j = 0,   δ = c p_n/h                           j = 1..k
 //! C:  φ - proj_{|·| ≤ μp̄} (φ - ρ E u) = 0
 //! ```
 //!
-//! `ΔL` is the change of angular momentum ([`crate::momentum`]), `r = Σ p_j y_j / N`, and `r_z = -(q_z + h v⁺_z)` because the ECP is on the plane. Without a support only A is left,
-//! and `-p_a n` acts at the lowest point where adhesion acts at the ECP.
+//! `ΔL` is the change of angular momentum ([`crate::momentum`]), `r = Σ p_j y_j / N`, and `r_z = -(q_z + h v⁺_z + δ)`
+//! because the ECP is on the plane, which has yielded by `δ`. Without a support only A is left, and `-p_a n` acts at the
+//! lowest point where adhesion acts at the ECP.
 
 use crate::contact::ContactPoints;
 use crate::friction::friction_rows;
@@ -48,7 +50,7 @@ pub struct Evaluation {
     pub linear: Vec3,
     /// `R⁺`.
     pub rotation: Mat3,
-    /// Height of the centre of mass after the step, m.
+    /// Height of the centre of mass above the yielded plane after the step, m.
     pub height: f64,
     /// `N`.
     pub normal: f64,
@@ -204,9 +206,9 @@ fn assemble<const N: usize>(
         }
         height = step.state.position.z + step.h * linear.z;
     } else {
-        height = step.state.position.z + step.h * linear.z;
+        height = step.state.position.z + step.h * linear.z + step.yielded(step.normal_impulse(normal));
         let supported = normal.abs() > NO_FORCE * scales.load;
-        // r and its derivatives; r_z follows the height, and h/m is its change with N.
+        // r and its derivatives; r_z follows the height, and h/m + c/h is its change with N.
         let mut arm_by_turn = Mat3::zeros();
         let mut arm_by_impulse = [Vec3::zeros(); 3];
         for j in 0..count {
@@ -219,7 +221,7 @@ fn assemble<const N: usize>(
                 *by = (y - arm) / normal;
             }
         }
-        let fall = step.h / step.mass;
+        let fall = step.h / step.mass + step.yielding;
         arm.z = -height;
         arm_by_turn.set_row(2, &nalgebra::RowVector3::zeros());
         for by in &mut arm_by_impulse[..count] {
@@ -243,7 +245,7 @@ fn assemble<const N: usize>(
                 jacobian[(3 + j, i)] = by_angular[i] * scales.angular / scales.length;
             }
             for l in 0..count {
-                jacobian[(3 + j, 3 + l)] = step.h / step.mass * scales.impulse / scales.length;
+                jacobian[(3 + j, 3 + l)] = fall * scales.impulse / scales.length;
             }
             error = error.max(rows[3 + j].abs());
         }

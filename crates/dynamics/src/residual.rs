@@ -1,7 +1,7 @@
 //! The scaled natural residual of a step in the unreduced problem (`docs/model.md`).
 //!
 //! ```text
-//! P = m|v| + |Iω|/ℓ + h|F_ext| + h|T|/ℓ + p_a + |N| + |p_t| + |p_o|        U = |v⁺| + ℓ|ω⁺| + P/m
+//! P = m|v| + |Iω|/ℓ + h|F_ext| + h|T|/ℓ + p_a + |N| + |p_t| + |p_o|        U = |v⁺| + ℓ|ω⁺| + P/(m + hk)
 //! ```
 
 use crate::StepSolution;

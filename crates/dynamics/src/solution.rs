@@ -88,7 +88,7 @@ pub fn set_normal_cone(body: &Body, support: Support, point: &Vec3, down: &Vec3,
     solution.plane_multiplier = 1.0;
     if greatest > 0.0 {
         multipliers.iter_mut().for_each(|l| *l /= greatest);
-        multipliers[active] = solution.ecp.z * greatest;
+        multipliers[active] = (solution.ecp.z - solution.ecp_substrate.z) * greatest;
         solution.plane_multiplier = 1.0 / greatest;
     }
 }

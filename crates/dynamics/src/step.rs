@@ -42,7 +42,7 @@ pub struct Step<'a> {
     pub body: &'a Body,
     /// s.
     pub h: f64,
-    /// kg.
+    /// `m + h k`, kg: translational drag takes `h k v⁺`, as a greater mass would.
     pub mass: f64,
     /// `ℓ`, the scale of lengths.
     pub size: f64,
@@ -50,7 +50,7 @@ pub struct Step<'a> {
     pub rotation: Mat3,
     /// `I^u` in the substrate frame.
     pub inertia: Mat3,
-    /// At the start of the step.
+    /// At the start of the step, with the velocity `m v/(m + h k)`.
     pub state: State,
     /// `h F_ext`.
     pub load: Vec3,
@@ -72,13 +72,15 @@ pub struct Step<'a> {
     pub pull: Vec3,
     /// N m s.
     pub pull_moment: Vec3,
+    /// `c/h`: how far the plane yields per normal impulse, m/(N s).
+    pub yielding: f64,
 }
 
 impl<'a> Step<'a> {
     /// The step of `trial` that starts at time `t` in `state`.
     pub fn new(trial: &'a Trial, state: &State, t: f64, adhesion: &Adhesion) -> Self {
         let robot = trial.robot();
-        let (h, mass) = (trial.step(), robot.mass());
+        let h = trial.step();
         let rotation = matrix(&state.orientation);
         let inertia = rotation * robot.inertia() * rotation.transpose();
         let model = trial.model();
@@ -90,6 +92,29 @@ impl<'a> Step<'a> {
         } else {
             (Vec3::zeros(), Vec3::zeros())
         };
+        let moment = rotation * robot.moment();
+        let drag = trial.surroundings().drag(&moment, state.position.z, robot.body().size());
+        let (mut mass, mut start) = (robot.mass(), *state);
+        if let Some((linear, _)) = drag
+            && linear > 0.0
+        {
+            mass += h * linear;
+            start.linear *= robot.mass() / mass;
+        }
+        let relief = trial.relief();
+        // From the substrate's frame to that of the tangent plane.
+        let tilt = (!relief.is_flat()).then(|| relief.tilt(state.position.y).transpose());
+        let field = trial.field();
+        let mut torque = match &tilt {
+            None => TorqueLaw::new(model.magnetic_torque, |t| field.at(t), moment, &state.angular, t, h),
+            Some(tilt) => TorqueLaw::new(model.magnetic_torque, |t| tilt * field.at(t), moment, &state.angular, t, h),
+        };
+        let mut load = trial.load(tilt.as_ref());
+        if let Some((force, moment)) = trial.surroundings().wrench(t + 0.5 * h) {
+            let turned = |v: Vec3| tilt.map_or(v, |tilt| tilt * v);
+            load += turned(force);
+            torque = torque.with_impulse(turned(moment) * h);
+        }
         Self {
             body: robot.body(),
             h,
@@ -97,18 +122,16 @@ impl<'a> Step<'a> {
             size: robot.body().size(),
             rotation,
             inertia,
-            state: *state,
-            load: trial.load() * h,
-            momentum: MomentumLaw::new(model.magnetic_torque, &inertia, &state.angular, h),
-            torque: TorqueLaw::new(
+            state: start,
+            load: load * h,
+            momentum: MomentumLaw::new(
                 model.magnetic_torque,
-                trial.field(),
-                robot.moment(),
-                &rotation,
+                &inertia,
                 &state.angular,
-                t,
                 h,
+                drag.as_ref().map(|(_, angular)| angular),
             ),
+            torque,
             ellipsoid: Vec3::from(trial.substrate().friction_ellipsoid),
             friction: FrictionBound::Coulomb(trial.substrate().friction_coefficient),
             adhesion: adhesion.impulse,
@@ -116,7 +139,14 @@ impl<'a> Step<'a> {
             raises_bound: !normal,
             pull,
             pull_moment,
+            yielding: trial.substrate().compliance / h,
         }
+    }
+
+    /// `δ`: how far the plane has yielded under the normal impulse `p_n`, m.
+    #[inline]
+    pub fn yielded(&self, normal: f64) -> f64 {
+        self.yielding * normal
     }
 
     /// `p_n` of the normal impulse `N` at the ECP.

@@ -183,9 +183,6 @@ fn accept(step: &Step, found: &Found, solution: &mut StepSolution) {
     solution.iterations = found.iterations;
     let down = downward(&at.rotation);
     let (lowest, lowest_point) = body.lowest(&down);
-    let depth = -(travelled.z + (at.rotation * lowest_point).z);
-    solution.penetration = depth.max(0.0);
-
     let arm = if found.support == Support::None && at.arm == Vec3::zeros() {
         ContactPoints::of_generator(body, lowest, &at.rotation).0
     } else {
@@ -200,11 +197,14 @@ fn accept(step: &Step, found: &Found, solution: &mut StepSolution) {
         solution.slip = Vec3::zeros();
         solution.sigma = 0.0;
     } else {
-        solution.ecp.z = 0.0;
         solution.normal = step.normal_impulse(at.normal);
+        solution.ecp_substrate.z = 0.0 - step.yielded(solution.normal);
+        solution.ecp.z = solution.ecp_substrate.z;
         solution.friction = step.ellipsoid.component_mul(&at.unknowns.friction);
         solution.slip = at.slip;
         solution.sigma = if at.slips { step.ellipsoid.component_mul(&at.slip).norm() } else { 0.0 };
     }
+    let depth = solution.ecp_substrate.z - (travelled.z + (at.rotation * lowest_point).z);
+    solution.penetration = depth.max(0.0);
     set_normal_cone(body, cone_of, &(at.rotation.transpose() * arm), &down, solution);
 }

@@ -1,4 +1,4 @@
-//! The substrate: friction, adhesion and electrostatic attraction.
+//! The substrate: friction, adhesion, electrostatic attraction and compliance.
 
 use crate::error::{Invalid, not_negative, positive};
 
@@ -15,6 +15,8 @@ pub struct Substrate {
     pub electrostatic_force: f64,
     /// Width of the strip that counts as area where a line touches, m.
     pub line_contact_width: f64,
+    /// `c`, m/N: the plane yields by `c λ_n`.
+    pub compliance: f64,
 }
 
 impl Substrate {
@@ -27,6 +29,7 @@ impl Substrate {
         not_negative("adhesion_N_per_m2", self.adhesion)?;
         not_negative("electrostatic_force_N", self.electrostatic_force)?;
         not_negative("line_contact_width_m", self.line_contact_width)?;
+        not_negative("compliance_m_per_N", self.compliance)?;
         Ok(self)
     }
 }

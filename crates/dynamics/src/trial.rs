@@ -3,7 +3,7 @@
 use crate::contact::downward;
 use crate::error::{Invalid, finite, not_negative, positive};
 use crate::rotation::matrix;
-use crate::{Field, MagneticTorque, Model, Robot, State, Substrate, Vec3};
+use crate::{Field, MagneticTorque, Mat3, Model, Relief, Robot, State, Substrate, Surroundings, Vec3};
 use geometry::Support;
 use nalgebra::Quaternion;
 
@@ -23,8 +23,14 @@ pub struct TrialParts {
     pub field: Field,
     /// The choices that the paper leaves open.
     pub model: Model,
-    /// `φ`, rad.
+    /// The substrate's heights.
+    pub relief: Relief,
+    /// What else acts on it.
+    pub surroundings: Surroundings,
+    /// `φ`, the slope along `y`, rad.
     pub incline: f64,
+    /// `σ`, the slope along `x`, rad.
+    pub side_incline: f64,
     /// `g`, m/s².
     pub gravity: f64,
     /// s.
@@ -47,7 +53,7 @@ pub struct Trial {
     parts: TrialParts,
     initial: State,
     support: Support,
-    load: Vec3,
+    weight: Vec3,
     steps: u64,
 }
 
@@ -55,7 +61,9 @@ impl Trial {
     /// A trial of `parts`, or the first thing about them that is refused.
     pub fn new(parts: TrialParts) -> Result<Self, Invalid> {
         parts.substrate.checked()?;
+        parts.surroundings.check()?;
         finite("incline_deg", parts.incline)?;
+        finite("side_incline_deg", parts.side_incline)?;
         not_negative("gravity_m_per_s2", parts.gravity)?;
         positive("duration_s", parts.duration)?;
         positive("step_s", parts.step)?;
@@ -102,11 +110,13 @@ impl Trial {
         let touches = position.z + lowest <= AT_REST * body.size();
         let support = if touches { body.touching(&down, AT_REST * body.size()) } else { Support::None };
         let initial = State { position, orientation, linear: parts.linear, angular: parts.angular };
-        // F_ext = m g (0, -sin φ, -cos φ) - F_elect n
+        // m g (-sin σ, -sin φ cos σ, -cos φ cos σ)
         let weight = parts.robot.mass() * parts.gravity;
         let (sin, cos) = parts.incline.sin_cos();
-        let load = Vec3::new(0.0, -weight * sin, -weight * cos - parts.substrate.electrostatic_force);
-        Ok(Self { parts, initial, support, load, steps: found as u64 })
+        let (side_sin, side_cos) = parts.side_incline.sin_cos();
+        // 0 - 0 is +0, and so is the force along x on a substrate that does not lean.
+        let weight = Vec3::new(0.0 - weight * side_sin, -weight * sin * side_cos, -weight * cos * side_cos);
+        Ok(Self { parts, initial, support, weight, steps: found as u64 })
     }
 
     /// What moves.
@@ -150,9 +160,28 @@ impl Trial {
         }
     }
 
-    /// `F_ext`, N.
-    pub fn load(&self) -> Vec3 {
-        self.load
+    /// The substrate's heights.
+    pub fn relief(&self) -> &Relief {
+        &self.parts.relief
+    }
+
+    /// What else acts on the robot.
+    pub fn surroundings(&self) -> &Surroundings {
+        &self.parts.surroundings
+    }
+
+    /// The weight, turned by `tilt` where there is one, less `F_elect n`, N.
+    #[inline]
+    pub fn load(&self, tilt: Option<&Mat3>) -> Vec3 {
+        let mut load = tilt.map_or(self.weight, |tilt| tilt * self.weight);
+        load.z -= self.parts.substrate.electrostatic_force;
+        load
+    }
+
+    /// Position (m) and orientation of `state` as they are seen from outside: on a relief the state is in the frame of the
+    /// tangent plane.
+    pub fn seen(&self, state: &State) -> (Vec3, Quaternion<f64>) {
+        self.parts.relief.seen(state)
     }
 
     /// The state at the start.

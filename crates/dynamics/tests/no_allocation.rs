@@ -29,7 +29,12 @@ static ALLOCATOR: Counting = Counting;
 
 #[test]
 fn a_run_allocates_nothing_after_its_start() {
-    for parts in [cuboid_on_paper(0.01, 10.0), pdms(spiked(4.0), 10.0, 0.0), pdms(curved(), 0.0, 0.0)] {
+    for parts in [
+        cuboid_on_paper(0.01, 10.0),
+        pdms(spiked(4.0), 10.0, 0.0),
+        pdms(curved(), 0.0, 0.0),
+        disturbed(pdms(spiked(4.0), 10.0, 0.0)),
+    ] {
         let trial = Trial::new(parts).unwrap();
         let mut stepper = Stepper::new(&trial, SolverKind::Reduced);
         let before = COUNT.with(Cell::get);

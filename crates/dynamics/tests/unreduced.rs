@@ -54,6 +54,13 @@ fn suite() -> Vec<TrialParts> {
             suite.push(parts);
         }
     }
+    for parts in [cuboid_on_paper(0.01, 5.0), pdms(spiked(4.0), 10.0, 0.0), pdms(curved(), 10.0, 30.0)] {
+        for torque in [MagneticTorque::EndOfStep, MagneticTorque::Midpoint] {
+            let mut parts = disturbed(parts.clone());
+            parts.model.magnetic_torque = torque;
+            suite.push(parts);
+        }
+    }
     suite
 }
 
@@ -80,7 +87,10 @@ fn every_step_of_the_suite_solves_the_unreduced_problem() {
 #[test]
 fn the_general_solver_makes_the_same_steps() {
     let on_incline = TrialParts { incline: 0.5, ..cuboid_on_paper(0.02, 5.0) };
-    for mut parts in [cuboid_on_paper(0.01, 5.0), on_incline, pdms(spiked(4.0), 10.0, 0.0), pdms(curved(), 10.0, 0.0)] {
+    let plain = [cuboid_on_paper(0.01, 5.0), on_incline, pdms(spiked(4.0), 10.0, 0.0), pdms(curved(), 10.0, 0.0)];
+    for mut parts in
+        plain.into_iter().chain([disturbed(cuboid_on_paper(0.01, 1.0)), disturbed(pdms(curved(), 10.0, 0.0))])
+    {
         parts.duration = 0.1;
         let trial = Trial::new(parts).unwrap();
         let size = trial.robot().body().size();
@@ -103,9 +113,10 @@ fn the_general_solver_makes_the_same_steps() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
     #[test]
-    fn the_jacobian_is_the_derivative(case in 0usize..4, seed in prop::collection::vec(-0.5..0.5f64, 40), active in 0usize..6) {
+    fn the_jacobian_is_the_derivative(case in 0usize..6, seed in prop::collection::vec(-0.5..0.5f64, 40), active in 0usize..6) {
         let parts = [
             cuboid_on_paper(0.01, 5.0), pdms(spiked(4.0), 10.0, 20.0), pdms(curved(), 10.0, 70.0), pdms(spiked_ends(9.0), 5.0, 0.0),
+            disturbed(cuboid_on_paper(0.01, 5.0)), disturbed(pdms(curved(), 10.0, 70.0)),
         ][case].clone();
         let trial = Trial::new(parts).unwrap();
         let stepper = Stepper::new(&trial, SolverKind::Reduced);

@@ -2,7 +2,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::mass_properties::MassProperties;
 use crate::normal_cone::NormalCone;
-use crate::{Edge, Face, Generator, Surface};
+use crate::{Edge, Face, Generator, GeometryError, Surface};
 
 /// A convex body `{ζ : f_i(ζ) ≤ 0}`, the convex hull of its generators, and the real body inside it, which has the mass
 /// and of which some part touches.
@@ -48,20 +48,8 @@ impl Parts {
     /// The body with the real body's centre of mass as its origin.
     pub fn centred(mut self) -> Body {
         let shift = -self.mass_properties.centre;
-        for surface in &mut self.surfaces {
-            *surface = surface.translated(&shift);
-        }
-        for generator in &mut self.generators {
-            *generator = generator.translated(&shift);
-        }
-        let in_faces = self
-            .faces
-            .iter_mut()
-            .flat_map(|face| face.anchors.iter_mut().chain([&mut face.area_centroid, &mut face.line_centroid]));
-        let in_edges = self.edges.iter_mut().map(|edge| &mut edge.midpoint);
-        for point in in_faces.chain(in_edges).chain(self.outline.iter_mut().flatten()) {
-            *point += shift;
-        }
+        let outline = self.outline.iter_mut().flatten();
+        translate(&mut self.surfaces, &mut self.generators, &mut self.faces, &mut self.edges, outline, &shift);
         self.in_place()
     }
 
@@ -101,7 +89,53 @@ impl Parts {
     }
 }
 
+/// Moves all that holds points; the normal cones hold only which gradients meet.
+fn translate<'a>(
+    surfaces: &mut [Surface],
+    generators: &mut [Generator],
+    faces: &mut [Face],
+    edges: &mut [Edge],
+    outline: impl Iterator<Item = &'a mut Vector3<f64>>,
+    shift: &Vector3<f64>,
+) {
+    for surface in surfaces {
+        *surface = surface.translated(shift);
+    }
+    for generator in generators {
+        *generator = generator.translated(shift);
+    }
+    for face in faces {
+        for point in face.anchors.iter_mut().chain([&mut face.area_centroid, &mut face.line_centroid]) {
+            *point += shift;
+        }
+    }
+    for edge in edges {
+        edge.midpoint += shift;
+    }
+    for point in outline {
+        *point += shift;
+    }
+}
+
 impl Body {
+    /// This body with its centre of mass, and with it the origin, at `offset` from where it is now. The inertia about the
+    /// centre of mass stays what it is.
+    pub fn with_center_of_mass(&self, offset: [f64; 3]) -> Result<Self, GeometryError> {
+        for value in offset {
+            GeometryError::finite("center_of_mass_m", value)?;
+        }
+        let offset = Vector3::from(offset);
+        let distance = self.max_value(&offset).1;
+        if distance >= 0.0 {
+            return Err(GeometryError::CentreOutside { distance });
+        }
+        let mut moved = self.clone();
+        let outline = moved.outline.iter_mut().flatten();
+        translate(&mut moved.surfaces, &mut moved.generators, &mut moved.faces, &mut moved.edges, outline, &-offset);
+        moved.size = moved.generators.iter().map(Generator::greatest_distance).fold(0.0, f64::max);
+        Ok(moved)
+    }
+
     /// The functions `f_i` whose `f_i ≤ 0` make up the hull.
     pub fn surfaces(&self) -> &[Surface] {
         &self.surfaces

@@ -65,6 +65,12 @@ pub enum GeometryError {
         /// Distance of the origin outside the nearest face's plane.
         distance: f64,
     },
+    /// A centre of mass that was moved out of the hull.
+    #[error("center_of_mass_m lies {distance:e} m outside the hull or on its boundary, expected inside")]
+    CentreOutside {
+        /// The greatest `f_i` there, for a flat face the distance outside it.
+        distance: f64,
+    },
     /// More points, faces or edges than the index type holds.
     #[error("the hull has {count} {what}, expected at most {limit}")]
     TooMany {
@@ -86,11 +92,14 @@ pub enum GeometryError {
 }
 
 impl GeometryError {
+    /// Refuses what is not a finite number.
+    pub(crate) fn finite(name: &'static str, value: f64) -> Result<(), Self> {
+        if value.is_finite() { Ok(()) } else { Err(Self::NotFinite { name, value }) }
+    }
+
     /// Refuses what is not a positive finite number.
     pub(crate) fn positive(name: &'static str, value: f64) -> Result<(), Self> {
-        if !value.is_finite() {
-            return Err(Self::NotFinite { name, value });
-        }
+        Self::finite(name, value)?;
         if value <= 0.0 {
             return Err(Self::NotPositive { name, value });
         }

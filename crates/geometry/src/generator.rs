@@ -38,11 +38,13 @@ pub struct Corner {
     pub width: f64,
 }
 
-/// An ellipsoid about the origin.
+/// An ellipsoid with its axes along those of the body frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EllipsoidGenerator {
     /// Semi-axes, in m.
     pub semi_axes: Vector3<f64>,
+    /// Centre, in m.
+    pub centre: Vector3<f64>,
 }
 
 /// One of the sets whose convex hull is the body.
@@ -152,16 +154,21 @@ impl Corner {
 }
 
 impl EllipsoidGenerator {
-    /// `s = A²u / ρ`, `ρ = |A u|`.
     #[inline]
     fn support(&self, direction: &Vector3<f64>) -> Vector3<f64> {
+        self.centre + self.about_centre(direction)
+    }
+
+    /// `s = A²u / ρ`, `ρ = |A u|`.
+    #[inline]
+    fn about_centre(&self, direction: &Vector3<f64>) -> Vector3<f64> {
         let scaled = self.semi_axes.component_mul(direction);
         self.semi_axes.component_mul(&scaled) / scaled.norm()
     }
 
     /// `∂s/∂u = (A² - s sᵀ) / ρ`.
     fn support_derivative(&self, direction: &Vector3<f64>) -> Matrix3<f64> {
-        let support = self.support(direction);
+        let support = self.about_centre(direction);
         let squares = self.semi_axes.component_mul(&self.semi_axes);
         let length = self.semi_axes.component_mul(direction).norm();
         (Matrix3::from_diagonal(&squares) - support * support.transpose()) / length
@@ -209,7 +216,8 @@ impl Generator {
         }
     }
 
-    /// Distance from the origin of its farthest point; a corner's is that of its ends.
+    /// Distance from the origin of its farthest point; a corner's is that of its ends, and for an ellipsoid off the origin
+    /// it is a bound.
     pub(crate) fn greatest_distance(&self) -> f64 {
         match self {
             Generator::Vertex(point) => point.norm(),
@@ -221,7 +229,7 @@ impl Generator {
                     .fold(0.0, f64::max)
             }
             Generator::Corner(corner) => corner.point(0.0).norm().max(corner.point(corner.width).norm()),
-            Generator::Ellipsoid(ellipsoid) => ellipsoid.semi_axes.max(),
+            Generator::Ellipsoid(ellipsoid) => ellipsoid.centre.norm() + ellipsoid.semi_axes.max(),
         }
     }
 
@@ -231,7 +239,9 @@ impl Generator {
             Generator::Vertex(point) => Generator::Vertex(point + shift),
             Generator::Arc(arc) => Generator::Arc(Arc { centre: arc.centre + shift, ..arc }),
             Generator::Corner(corner) => Generator::Corner(Corner { origin: corner.origin + shift, ..corner }),
-            ellipsoid => ellipsoid,
+            Generator::Ellipsoid(ellipsoid) => {
+                Generator::Ellipsoid(EllipsoidGenerator { centre: ellipsoid.centre + shift, ..ellipsoid })
+            }
         }
     }
 }

@@ -24,11 +24,13 @@ pub struct Cone {
     pub draft: f64,
 }
 
-/// An ellipsoid `f(ζ) = (b/2) (Σ ζ_k²/A_k² - 1)`, `b = min A`.
+/// An ellipsoid `f(ζ) = (b/2) (Σ (ζ_k - c_k)²/A_k² - 1)`, `b = min A`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EllipsoidSurface {
     /// Semi-axes `A`, in m.
     pub semi_axes: Vector3<f64>,
+    /// Centre `c`, in m.
+    pub centre: Vector3<f64>,
 }
 
 /// One of the functions `f_i` whose `f_i ≤ 0` make up the body.
@@ -54,7 +56,7 @@ impl Surface {
                 cos * ((y * y + z * z).sqrt() - s.radius) + sin * (point.x - s.x0)
             }
             Surface::Ellipsoid(s) => {
-                let scaled = point.component_div(&s.semi_axes);
+                let scaled = (point - s.centre).component_div(&s.semi_axes);
                 0.5 * s.semi_axes.min() * (scaled.norm_squared() - 1.0)
             }
         }
@@ -74,7 +76,7 @@ impl Surface {
             }
             Surface::Ellipsoid(s) => {
                 let squares = s.semi_axes.component_mul(&s.semi_axes);
-                s.semi_axes.min() * point.component_div(&squares)
+                s.semi_axes.min() * (point - s.centre).component_div(&squares)
             }
         }
     }
@@ -105,7 +107,7 @@ impl Surface {
         match *self {
             Surface::HalfSpace(s) => Surface::HalfSpace(HalfSpace { offset: s.offset + s.normal.dot(shift), ..s }),
             Surface::Cone(s) => Surface::Cone(Cone { x0: s.x0 + shift.x, y0: s.y0 + shift.y, z0: s.z0 + shift.z, ..s }),
-            ellipsoid => ellipsoid,
+            Surface::Ellipsoid(s) => Surface::Ellipsoid(EllipsoidSurface { centre: s.centre + shift, ..s }),
         }
     }
 }

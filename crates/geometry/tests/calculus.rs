@@ -10,7 +10,10 @@ fn surfaces() -> [Surface; 3] {
     [
         Surface::HalfSpace(HalfSpace { normal: Vector3::new(0.6, 0.0, 0.8), offset: 0.3 }),
         Surface::Cone(Cone { x0: -0.2, y0: 0.1, z0: -0.3, radius: 1.2, draft: 0.2 }),
-        Surface::Ellipsoid(EllipsoidSurface { semi_axes: Vector3::new(0.7, 1.0, 0.4) }),
+        Surface::Ellipsoid(EllipsoidSurface {
+            semi_axes: Vector3::new(0.7, 1.0, 0.4),
+            centre: Vector3::new(0.1, -0.2, 0.05),
+        }),
     ]
 }
 

@@ -74,6 +74,10 @@ impl PyBody {
         built(Body::hull(&vertices_m))
     }
 
+    fn with_center_of_mass(&self, offset_m: [f64; 3]) -> PyResult<Self> {
+        built(self.0.with_center_of_mass(offset_m))
+    }
+
     #[getter]
     fn volume_m3(&self) -> f64 {
         self.0.volume()

@@ -30,6 +30,11 @@ pub fn quaternion(q: [f64; 4]) -> Quaternion<f64> {
     Quaternion::new(q[0], q[1], q[2], q[3])
 }
 
+/// `w, x, y, z`.
+pub fn quaternion_array<'py>(py: Python<'py>, q: &Quaternion<f64>) -> Bound<'py, PyArray1<f64>> {
+    PyArray1::from_slice(py, &[q.w, q.i, q.j, q.k])
+}
+
 /// Rows of `N` numbers as an array of shape `(rows, N)`.
 pub fn table<'py, const N: usize>(py: Python<'py>, rows: &[[f64; N]]) -> PyResult<Bound<'py, PyArray2<f64>>> {
     PyArray1::from_slice(py, rows.as_flattened()).reshape([rows.len(), N])

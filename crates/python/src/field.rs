@@ -10,13 +10,18 @@ pub struct PyField(pub Field);
 #[pymethods]
 impl PyField {
     #[staticmethod]
+    #[pyo3(signature = (strength_T, frequency_Hz, rotation_axis, initial_direction, quadrature_ratio=1.0,
+        phase_error_rad=0.0))]
     fn rotating(
         strength_T: f64,
         frequency_Hz: f64,
         rotation_axis: [f64; 3],
         initial_direction: [f64; 3],
+        quadrature_ratio: f64,
+        phase_error_rad: f64,
     ) -> PyResult<Self> {
         let field = Field::rotating(strength_T, frequency_Hz, rotation_axis.into(), initial_direction.into());
+        let field = field.and_then(|field| field.with_quadrature(quadrature_ratio, phase_error_rad));
         field.map(Self).map_err(refused)
     }
 

@@ -8,6 +8,7 @@ mod run;
 mod step;
 #[allow(non_snake_case)]
 mod trial;
+mod walk;
 
 use pyo3::prelude::*;
 
@@ -18,6 +19,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<trial::PyTrial>()?;
     module.add_function(wrap_pyfunction!(run::simulate, module)?)?;
     module.add_function(wrap_pyfunction!(run::sweep, module)?)?;
+    module.add_function(wrap_pyfunction!(run::rollouts, module)?)?;
+    module.add_class::<walk::PyWalk>()?;
     module.add_function(wrap_pyfunction!(step::step, module)?)?;
     Ok(())
 }

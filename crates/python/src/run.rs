@@ -2,13 +2,14 @@
 
 use crate::convert::{refused, solver, table};
 use crate::trial::PyTrial;
-use dynamics::batch::{Control, Outcome, sweep as run_batch};
+use dynamics::batch::{Control, Outcome, rollouts as run_rollouts, sweep as run_batch};
 use dynamics::recording::{Ended, record};
-use dynamics::{Metrics, Trial};
+use dynamics::{Metrics, Rollout, Trial};
 use numpy::IntoPyArray;
 use pyo3::exceptions::{PyArithmeticError, PyKeyboardInterrupt};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use rayon::ThreadPoolBuildError;
 use std::ops::ControlFlow;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{self, RecvTimeoutError};
@@ -86,26 +87,7 @@ pub fn sweep<'py>(
     on_progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let trials: Vec<Trial> = trials.iter().map(|trial| trial.0.clone()).collect();
-    let control = Control::default();
-    let outcomes = py.detach(|| {
-        let (done, outcomes) = mpsc::channel();
-        std::thread::scope(|scope| {
-            scope.spawn(|| done.send(run_batch(&trials, threads, &control)));
-            loop {
-                match outcomes.recv_timeout(LOOK) {
-                    Ok(outcomes) => return outcomes.map_err(refused),
-                    Err(RecvTimeoutError::Disconnected) => return Err(refused("the batch ended without outcomes")),
-                    Err(RecvTimeoutError::Timeout) => {}
-                }
-                let finished = control.finished.load(Ordering::Relaxed) as u64;
-                if let Err(error) = Python::attach(|py| report(py, on_progress.as_ref(), finished)) {
-                    control.stop.store(true, Ordering::Relaxed);
-                    return Err(error);
-                }
-            }
-        })
-    })?;
-    report(py, on_progress.as_ref(), trials.len() as u64)?;
+    let outcomes = watched(py, trials.len(), on_progress.as_ref(), |control| run_batch(&trials, threads, control))?;
     let metrics: Vec<Option<Metrics>> = outcomes
         .iter()
         .map(|outcome| if let Outcome::Done(metrics) = outcome { Some(*metrics) } else { None })
@@ -134,6 +116,71 @@ pub fn sweep<'py>(
     out.set_item("newton_iterations", count(|m| m.newton_iterations).into_pyarray(py))?;
     out.set_item("error", errors)?;
     Ok(out)
+}
+
+#[pyfunction]
+#[pyo3(signature = (trials, every, threads=0, on_progress=None))]
+pub fn rollouts<'py>(
+    py: Python<'py>,
+    trials: Vec<PyRef<'py, PyTrial>>,
+    every: Vec<u64>,
+    threads: usize,
+    on_progress: Option<Py<PyAny>>,
+) -> PyResult<Vec<Bound<'py, PyDict>>> {
+    if every.len() != trials.len() || every.contains(&0) {
+        return Err(refused("every is refused, expected a whole number of at least 1 for each trial"));
+    }
+    let trials: Vec<Trial> = trials.iter().map(|trial| trial.0.clone()).collect();
+    let outcomes =
+        watched(py, trials.len(), on_progress.as_ref(), |control| run_rollouts(&trials, &every, threads, control))?;
+    outcomes
+        .into_iter()
+        .map(|outcome| {
+            let out = PyDict::new(py);
+            let (rollout, error) = match outcome {
+                Outcome::Done(rollout) => (rollout, None),
+                Outcome::Failed(message) => (Rollout::default(), Some(message)),
+                Outcome::Stopped => (Rollout::default(), Some("stopped before its end".to_owned())),
+            };
+            out.set_item("time_s", rollout.time.into_pyarray(py))?;
+            out.set_item("position_m", table(py, &rollout.position)?)?;
+            out.set_item("orientation", table(py, &rollout.orientation)?)?;
+            out.set_item("contact_mode", rollout.contact_mode.into_pyarray(py))?;
+            out.set_item("unconverged_steps", rollout.unconverged_steps)?;
+            out.set_item("error", error)?;
+            Ok(out)
+        })
+        .collect()
+}
+
+/// Runs a batch on a thread of its own, and looks for Ctrl-C meanwhile.
+fn watched<T: Send>(
+    py: Python<'_>,
+    total: usize,
+    on_progress: Option<&Py<PyAny>>,
+    run: impl FnOnce(&Control) -> Result<Vec<Outcome<T>>, ThreadPoolBuildError> + Send,
+) -> PyResult<Vec<Outcome<T>>> {
+    let control = Control::default();
+    let outcomes = py.detach(|| {
+        let (done, outcomes) = mpsc::channel();
+        std::thread::scope(|scope| {
+            scope.spawn(|| done.send(run(&control)));
+            loop {
+                match outcomes.recv_timeout(LOOK) {
+                    Ok(outcomes) => return outcomes.map_err(refused),
+                    Err(RecvTimeoutError::Disconnected) => return Err(refused("the batch ended without outcomes")),
+                    Err(RecvTimeoutError::Timeout) => {}
+                }
+                let finished = control.finished.load(Ordering::Relaxed) as u64;
+                if let Err(error) = Python::attach(|py| report(py, on_progress, finished)) {
+                    control.stop.store(true, Ordering::Relaxed);
+                    return Err(error);
+                }
+            }
+        })
+    })?;
+    report(py, on_progress, total as u64)?;
+    Ok(outcomes)
 }
 
 /// Raises a pending Ctrl-C, then tells `on_progress` how much is done.

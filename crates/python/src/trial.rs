@@ -4,7 +4,8 @@ use crate::body::PyBody;
 use crate::convert::{choose, quaternion, refused};
 use crate::field::PyField;
 use dynamics::{
-    AdhesionActsAt, AdhesionEnters, MagneticTorque, Model, Robot, Substrate, Trial, Vec3, trial::TrialParts,
+    AdhesionActsAt, AdhesionEnters, MagneticTorque, Model, Relief, Robot, Substrate, Surroundings, Trial, Vec3,
+    trial::TrialParts,
 };
 use pyo3::prelude::*;
 
@@ -17,7 +18,10 @@ impl PyTrial {
     #[pyo3(signature = (*, body, mass_kg, magnetic_moment_A_m2, friction_coefficient, friction_ellipsoid,
         adhesion_N_per_m2, electrostatic_force_N, line_contact_width_m, field, incline_rad, gravity_m_per_s2,
         duration_s, step_s, magnetic_torque, adhesion_acts_at, adhesion_enters, position_m=None, orientation=None,
-        linear_velocity_m_per_s=[0.0; 3], angular_velocity_rad_per_s=[0.0; 3]))]
+        linear_velocity_m_per_s=[0.0; 3], angular_velocity_rad_per_s=[0.0; 3], side_incline_rad=0.0,
+        compliance_m_per_N=0.0, relief_wavelength_m=2e-3, relief_cosine_m=vec![], relief_sine_m=vec![], force_N=[0.0; 3],
+        torque_N_m=[0.0; 3], translational_drag_N_s_per_m=0.0, rotational_drag_N_m_s=0.0, sheet_conductance_S=0.0,
+        wrench_time_s=vec![], wrench_N_N_m=vec![]))]
     #[allow(clippy::too_many_arguments)] // one keyword for each number of a scenario
     fn new(
         body: &PyBody,
@@ -40,6 +44,18 @@ impl PyTrial {
         orientation: Option<[f64; 4]>,
         linear_velocity_m_per_s: [f64; 3],
         angular_velocity_rad_per_s: [f64; 3],
+        side_incline_rad: f64,
+        compliance_m_per_N: f64,
+        relief_wavelength_m: f64,
+        relief_cosine_m: Vec<f64>,
+        relief_sine_m: Vec<f64>,
+        force_N: [f64; 3],
+        torque_N_m: [f64; 3],
+        translational_drag_N_s_per_m: f64,
+        rotational_drag_N_m_s: f64,
+        sheet_conductance_S: f64,
+        wrench_time_s: Vec<f64>,
+        wrench_N_N_m: Vec<[f64; 6]>,
     ) -> PyResult<Self> {
         let robot = Robot::new(body.0.clone(), mass_kg, magnetic_moment_A_m2.into()).map_err(refused)?;
         let substrate = Substrate {
@@ -48,6 +64,17 @@ impl PyTrial {
             adhesion: adhesion_N_per_m2,
             electrostatic_force: electrostatic_force_N,
             line_contact_width: line_contact_width_m,
+            compliance: compliance_m_per_N,
+        };
+        let wrench = |w: [f64; 6]| (Vec3::new(w[0], w[1], w[2]), Vec3::new(w[3], w[4], w[5]));
+        let surroundings = Surroundings {
+            force: force_N.into(),
+            torque: torque_N_m.into(),
+            translational_drag: translational_drag_N_s_per_m,
+            rotational_drag: rotational_drag_N_m_s,
+            sheet_conductance: sheet_conductance_S,
+            times: wrench_time_s.into(),
+            wrenches: wrench_N_N_m.into_iter().map(wrench).collect(),
         };
         let model = Model {
             magnetic_torque: choose(
@@ -75,7 +102,10 @@ impl PyTrial {
             substrate,
             field: field.0.clone(),
             model,
+            relief: Relief::new(relief_wavelength_m, &relief_cosine_m, &relief_sine_m).map_err(refused)?,
+            surroundings,
             incline: incline_rad,
+            side_incline: side_incline_rad,
             gravity: gravity_m_per_s2,
             duration: duration_s,
             step: step_s,

@@ -6,11 +6,13 @@ from .field import RotatingField, StaticField, TableField
 from .metrics import cycle_twist, drift, flipped, pose_at, speed, tilt, twist
 from .parameters import State, Trial
 from .problem import StepProblem, Unknowns
+from .relief import Relief
 from .residual import residual, residual_rows
 from .shapes import cuboid, curved, ellipsoid, hull, spiked, spiked_ends
 from .solver import solve
 from .stepper import StepSolution, step
 from .surface import Cone, Ellipsoid, HalfSpace
+from .surroundings import Surroundings
 from .trial import Run, run
 
 __all__ = [
@@ -20,12 +22,14 @@ __all__ = [
     "Ellipsoid",
     "HalfSpace",
     "Patch",
+    "Relief",
     "RotatingField",
     "Run",
     "State",
     "StaticField",
     "StepProblem",
     "StepSolution",
+    "Surroundings",
     "TableField",
     "Trial",
     "Unknowns",

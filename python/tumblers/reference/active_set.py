@@ -7,7 +7,7 @@ unknowns are `V⁺`, `r = a1 - q⁺`, the `λ` of the cell's surfaces, and in co
     momentum rows                                                    6
     r = R⁺ s                                    (a vertex s)         3
     f_i(a1) = 0,  Σ λ_i ∇f_i(a1) = -n           (any other cell)     |A| + 3
-    z(a1) = 0                                   (contact)            1
+    z(a1) + δ = 0                               (contact)            1
     E u = 0                                     (stick)              3
     E u + d σ = 0,  |d|² = 1                    (slip)               4
 
@@ -97,7 +97,7 @@ class ActiveSet:
             parts.append(rotation @ push + NORMAL)
         if self.regime == "airborne":
             return np.concatenate(parts)
-        parts.append(np.array([(position[2] + r[2]) / moved]))
+        parts.append(np.array([(position[2] + r[2] + problem.yielded(p_n)) / moved]))
         slipping = problem.e * slip(V, r)
         if self.regime == "stick":
             parts.append(slipping / self.speed)
@@ -176,7 +176,7 @@ def complete(
     k = int(np.argmax(multipliers))
     if multipliers[k] <= 0.0:
         multipliers[k] = 1.0
-    gap = float(a1[2])
+    gap = float(a1[2]) + problem.yielded(p_n)
     a2 = a1 - gap * NORMAL
     ratio = multipliers / multipliers[k]
     ratio[k] = 0.0 if contact and abs(gap) < _ON_SURFACE * problem.body.radius else gap * multipliers[k]

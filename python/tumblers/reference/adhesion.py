@@ -74,7 +74,10 @@ def touching_patch(body: Body, position: Array, rotation: Array, touch: Array) -
     best: tuple[int, Patch] = (1, Patch(ContactMode.POINT, 0.0, 0.0, touch, touch))
     for cell in body.cells:
         points = body.cell_points(cell, rotation)
-        if len(points) <= best[0] or float(np.abs(position[2] + points @ rotation[2]).max()) > TOUCHING * body.radius:
+        if len(points) <= best[0]:
+            continue
+        # The plane is where it is touched; it may have yielded.
+        if float(np.abs(position[2] - touch[2] + points @ rotation[2]).max()) > TOUCHING * body.radius:
             continue
         if cell.kind == "curved":
             length, middle = body.generator(cell, rotation)

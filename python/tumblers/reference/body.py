@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -41,6 +41,16 @@ class Rim:
             return None
         return np.asarray(self.centre + self.radius * np.array([0.0, np.sin(angle), np.cos(angle)]))
 
+    def moved(self, by: Array) -> Rim:
+        """The same arc after the body frame's origin moved to `by`, shape (3,) [m]."""
+        return replace(self, centre=self.centre - by)
+
+    def farthest(self) -> float:
+        """Greatest distance of a point of the arc from the origin [m]."""
+        angles = np.append(np.linspace(-self.half_angle, self.half_angle, 181), 0.0)
+        circle = np.stack([0.0 * angles, np.sin(angles), np.cos(angles)], axis=1)
+        return float(np.linalg.norm(self.centre + self.radius * circle, axis=1).max())
+
 
 @dataclass(frozen=True, eq=False)
 class Anchor:
@@ -76,6 +86,19 @@ class Body:
     volume: float
     inertia_per_mass: Array
     radius: float
+
+    def with_centre_of_mass(self, offset: Array) -> Body:
+        """This body with its centre of mass, and the origin with it, at `offset`, shape (3,), body frame [m].
+
+        The inertia about the centre of mass stays what it is. The radius of an ellipsoid is a bound.
+        """
+        surfaces = tuple(surface.shifted(offset) for surface in self.surfaces)
+        cells = tuple(cell.moved(offset) for cell in self.cells)
+        rims = tuple(rim.moved(offset) for rim in self.rims)
+        far = [float(np.linalg.norm(point)) for cell in cells for point in cell.points]
+        far += [rim.farthest() for rim in rims]
+        far += [float(np.linalg.norm(s.centre) + s.semi_axes.max()) for s in surfaces if isinstance(s, Ellipsoid)]
+        return replace(self, surfaces=surfaces, cells=cells, rims=rims, radius=max(far))
 
     def values(self, point: Array) -> Array:
         """All `f_i` [m], shape (m,), at `point`, shape (3,), body frame [m]."""

@@ -39,12 +39,12 @@ def mass_matrix(problem: StepProblem, V: Array) -> Array:
     """`M` with the magnetic torque's stiffness `-h ∂T/∂ω⁺`, symmetrised, where that is positive definite."""
     matrix = np.zeros((6, 6))
     matrix[:3, :3] = problem.mass * np.eye(3)
-    matrix[3:, 3:] = problem.inertia
+    matrix[3:, 3:] = problem.inertia + problem.h * problem.rotational_drag
     d = 1e-4 / problem.h
     slope = np.stack(
         [(problem.torque(V[3:] + e) - problem.torque(V[3:] - e)) / (2.0 * d) for e in d * np.eye(3)], axis=1
     )
-    stiff = problem.inertia - 0.5 * problem.h * (slope + slope.T)
+    stiff = matrix[3:, 3:] - 0.5 * problem.h * (slope + slope.T)
     if float(np.linalg.eigvalsh(stiff)[0]) > 0.1 * float(np.linalg.eigvalsh(problem.inertia)[0]):
         matrix[3:, 3:] = stiff
     return matrix
@@ -74,7 +74,7 @@ def slipping_start(problem: StepProblem, guess: Guess) -> tuple[Array, float, fl
     inverse = np.asarray(np.linalg.inv(mass_matrix(problem, guess.V)), dtype=np.float64)
     tangential = lift(guess.r)
     normal = np.concatenate([NORMAL, cross(guess.r, NORMAL)])
-    compliance = float(normal @ inverse @ normal)
+    compliance = float(normal @ inverse @ normal) + problem.yielded(1.0) / problem.h
     coupling = np.asarray(tangential.T @ inverse @ normal)
     without = np.asarray(guess.V - inverse @ tangential @ guess.p)
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from dataclasses import field as attribute
 from typing import Literal
 
 import numpy as np
@@ -13,7 +14,9 @@ from .body import Body
 from .field import Field, StaticField
 from .friction import AdhesionEnters
 from .magnetics import TorqueTime
+from .relief import Relief
 from .rotation import matrix
+from .surroundings import Surroundings
 
 AdhesionActsAt = Literal["ecp", "patch_centroid"]
 
@@ -34,8 +37,8 @@ class State:
 
     position: Array
     quaternion: Array
-    velocity: Array = field(default_factory=lambda: np.zeros(3))
-    angular_velocity: Array = field(default_factory=lambda: np.zeros(3))
+    velocity: Array = attribute(default_factory=lambda: np.zeros(3))
+    angular_velocity: Array = attribute(default_factory=lambda: np.zeros(3))
 
     @property
     def rotation(self) -> Array:
@@ -68,22 +71,30 @@ class Trial:
     field : Field
         `B(t)`.
     incline_rad, step, duration : float
-        Incline [rad], `h` [s], duration [s].
+        Slope along y `φ` [rad], `h` [s], duration [s].
     torque_time, adhesion_acts_at, adhesion_enters
         The model's switches.
     gravity : float
         `g` [m/s²].
+    side_incline_rad : float
+        Slope along x `σ` [rad].
+    compliance : float
+        `c` [m/N].
+    relief : Relief
+        `h(y)`.
+    surroundings : Surroundings
+        What else acts.
     """
 
     body: Body
     mass: float
-    moment: Array = field(default_factory=lambda: np.zeros(3))
+    moment: Array = attribute(default_factory=lambda: np.zeros(3))
     mu: float = 0.3
-    ellipsoid: Array = field(default_factory=lambda: np.array([1.0, 1.0, 1e-4]))
+    ellipsoid: Array = attribute(default_factory=lambda: np.array([1.0, 1.0, 1e-4]))
     adhesion_coefficient: float = 0.0
     electrostatic_force: float = 0.0
     line_width: float = 0.0
-    field: Field = field(default_factory=lambda: StaticField(np.zeros(3)))
+    field: Field = attribute(default_factory=lambda: StaticField(np.zeros(3)))
     incline_rad: float = 0.0
     step: float = 5e-4
     duration: float = 1.0
@@ -91,6 +102,10 @@ class Trial:
     adhesion_acts_at: AdhesionActsAt = "ecp"
     adhesion_enters: AdhesionEnters = "normal"
     gravity: float = 9.8
+    side_incline_rad: float = 0.0
+    compliance: float = 0.0
+    relief: Relief = attribute(default_factory=Relief)
+    surroundings: Surroundings = attribute(default_factory=Surroundings)
 
     def resting_state(self) -> State:
         """At rest, body axes along the substrate's, the lowest point on the plane."""

@@ -3,7 +3,7 @@
 The body's anchors (corners, lowest points of arcs and ellipsoids) are taken as frictionless point contacts of a step
 linearised about the current guess; friction is lagged. Each pass is a least-distance problem::
 
-    min ½ ΔVᵀ M ΔV   with   z_j + h [n; y_j × n] · ΔV ≥ 0
+    min ½ ΔVᵀ M ΔV + ½ δ²h/c   with   z_j + h [n; y_j × n] · ΔV + δ ≥ 0
 
 solved by non-negative least squares (Lawson and Hanson, Solving Least Squares Problems, chapter 23).
 """
@@ -81,8 +81,9 @@ def predictions(problem: StepProblem, free: Array, passes: int = 8) -> list[Pred
         V_free = V + inverse @ missing
         jacobian = np.array([np.concatenate([NORMAL, cross(point, NORMAL)]) for point in y])
         lack = -(position[2] + y[:, 2] + h * jacobian @ (V_free - V)) / h
-        impulses, change = _least_distance(jacobian @ factor, lack)
-        V = V_free + factor @ change
+        soft = np.full((len(y), 1), np.sqrt(problem.yielded(1.0) / h))
+        impulses, change = _least_distance(np.hstack([jacobian @ factor, soft]), lack - problem.yielded(adhesion) / h)
+        V = V_free + factor @ change[:6]
         normal = float(impulses.sum())
         loaded = impulses > 1e-9 * max(normal, 1e-300)
         if normal <= 0.0:

@@ -3,11 +3,14 @@
 Unknowns `u_z = [V⁺; a1; a2; p_t; p_o; p_r]` and `v_z = [l_1..l_m; l_plane; σ; p_n]`, with `r = a1 - q⁺`,
 `C_F = ∇f_k(a1) + Σ_{i≠k} l_i ∇f_i(a1)` and `C_G = l_plane n`::
 
-    0 = M (V⁺ - V) - W_n N - W_t p_t - W_o p_o - W_r p_r - h [F_ext; T] + h [0; ω × Iω] + [p_a n; (c - q)×n p_a]*
+    0 = M (V⁺ - V) + h [k v⁺; D ω⁺] - W_n N - W_t p_t - W_o p_o - W_r p_r - h [F_ext; T] + h [0; ω × Iω]
+        + [p_a n; (c - q)×n p_a]*
     0 = a1 - a2 + l_k C_F
     0 = C_F + C_G
     0 = μ e_i² p̄ u_i + p_i σ
     0 ≤ l_i ⊥ -f_i(a1) ≥ 0,   0 ≤ l_plane ⊥ -g(a2) ≥ 0,   0 ≤ σ ⊥ ξ ≥ 0,   0 ≤ p_n ⊥ max_i f_i(a2) ≥ 0
+
+with `g(a2) = z(a2) + δ`, the plane having yielded by `δ = c p_n/h`.
 
 (* where adhesion acts at the patch centroid; there and for `friction_only` `N = p_n`, otherwise `N = p_n - p_a`.)
 """
@@ -15,11 +18,13 @@ Unknowns `u_z = [V⁺; a1; a2; p_t; p_o; p_r]` and `v_z = [l_1..l_m; l_plane; σ
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from .array import Array
+from .field import TurnedField
 from .friction import bound_impulse, fritz_john, slack, slip
 from .magnetics import step_torque
 from .momentum import final_momentum, known_momentum
@@ -85,18 +90,23 @@ class StepProblem:
         self, trial: Trial, state: State, time: float, adhesion_force: float = 0.0, patch_centroid: Array | None = None
     ) -> None:
         self.trial, self.state, self.time, self.body = trial, state, time, trial.body
-        self.h, self.mass, self.mu, self.e = trial.step, trial.mass, trial.mu, trial.ellipsoid
+        self.h, self.mu, self.e = trial.step, trial.mu, trial.ellipsoid
         self.p_a = trial.step * adhesion_force
         self.centroid = patch_centroid
         self.rotation = state.rotation
         self.inertia = trial.mass * self.rotation @ trial.body.inertia_per_mass @ self.rotation.T
-        incline, weight = trial.incline_rad, trial.mass * trial.gravity
-        self.force = np.array([0.0, -weight * math.sin(incline), -weight * math.cos(incline)])
-        self.force[2] -= trial.electrostatic_force
-        omega = state.angular_velocity
-        self.torque = step_torque(trial.torque_time, trial.moment, self.rotation, omega, trial.field, time, trial.step)
+        turn = trial.relief.to_tangent(float(state.position[1]))
+        push, twist = trial.surroundings.wrench(time + 0.5 * trial.step)
+        self.force = turn @ (_weight(trial) + push) - trial.electrostatic_force * NORMAL
+        omega, field = state.angular_velocity, TurnedField(trial.field, turn)
+        magnetic = step_torque(trial.torque_time, trial.moment, self.rotation, omega, field, time, trial.step)
+        self.torque: Callable[[Array], Array] = lambda omega_end: magnetic(omega_end) + turn @ twist
+        moment, height = self.rotation @ trial.moment, float(state.position[2])
+        drag, self.rotational_drag = trial.surroundings.drag(moment, height, trial.body.radius)
+        # What a change of v⁺ takes.
+        self.mass = trial.mass + self.h * drag
         self.spin = self.inertia @ omega
-        linear = self.mass * state.velocity + self.h * self.force
+        linear = trial.mass * state.velocity + self.h * self.force
         angular = known_momentum(trial.torque_time, self.inertia, omega, self.h)
         self.adhesion_at_ecp = trial.adhesion_enters == "normal" and trial.adhesion_acts_at == "ecp"
         if trial.adhesion_enters == "normal" and trial.adhesion_acts_at == "patch_centroid" and self.p_a > 0.0:
@@ -111,7 +121,12 @@ class StepProblem:
 
     def angular_momentum(self, omega: Array) -> Array:
         """What the momentum rows count of `ω⁺` [N m s]."""
-        return final_momentum(self.trial.torque_time, self.inertia, omega, self.h)
+        kept = final_momentum(self.trial.torque_time, self.inertia, omega, self.h)
+        return np.asarray(kept + self.h * self.rotational_drag @ omega)
+
+    def yielded(self, p_n: float) -> float:
+        """`δ` [m], how far the plane has yielded under `p_n`."""
+        return self.trial.compliance * p_n / self.h
 
     def normal_impulse(self, p_n: float) -> float:
         """`N`, the normal impulse at `a1` [N s]."""
@@ -158,4 +173,16 @@ class StepProblem:
         """What is complementary to `l` (m,), `l_plane`, `σ` and `p_n`: `-f(a1)`, `-g(a2)`, `ξ`, `max f(a2)`."""
         values, _ = self.surface_rows(z.V, z.a1)
         reach, _ = self.surface_rows(z.V, z.a2)
-        return -values, -float(z.a2[2]), slack(self.mu, self.e, self.bound(z.p_n), z.p), float(reach.max())
+        return (
+            -values,
+            -float(z.a2[2]) - self.yielded(z.p_n),
+            slack(self.mu, self.e, self.bound(z.p_n), z.p),
+            float(reach.max()),
+        )
+
+
+def _weight(trial: Trial) -> Array:
+    """`m g (-sin σ, -sin φ cos σ, -cos φ cos σ)` [N], shape (3,)."""
+    phi, sigma, weight = trial.incline_rad, trial.side_incline_rad, trial.mass * trial.gravity
+    down = [math.sin(sigma), math.sin(phi) * math.cos(sigma), math.cos(phi) * math.cos(sigma)]
+    return np.asarray(-weight * np.array(down))

@@ -3,7 +3,7 @@
 Equations::
 
     P = m|v| + |Iω|/ℓ + h|F_ext| + h|T|/ℓ + p_a + |N| + |p_t| + |p_o|
-    U = |v⁺| + ℓ|ω⁺| + P/m
+    U = |v⁺| + ℓ|ω⁺| + P/(m + hk)
 
 `f_k(a1) = 0` makes `k` active. Momentum rows over `P` and `Pℓ`, `a1 - a2 + l_k C_F` over `ℓ`, `C_F + C_G` over
 `l_plane`, friction row `i` over `e_i P max(U, σ)`; of the complementary pairs the lesser of `l_i` (`l_k/ℓ`) and
@@ -25,7 +25,7 @@ def scales(problem: StepProblem, z: Unknowns) -> tuple[float, float]:
     """`P` [N s] and `U` [m/s]."""
     length, h, mass = problem.body.radius, problem.h, problem.mass
     impulse = (
-        mass * float(np.linalg.norm(problem.state.velocity))
+        problem.trial.mass * float(np.linalg.norm(problem.state.velocity))
         + float(np.linalg.norm(problem.spin)) / length
         + h * float(np.linalg.norm(problem.force))
         + h * float(np.linalg.norm(problem.torque(z.V[3:]))) / length

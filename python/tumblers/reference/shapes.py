@@ -19,7 +19,7 @@ from .cell import Cell, polytope_cells
 from .hull import convex_hull
 from .mass_properties import MassProperties, polygon_moments, sector_moments, swept, tetrahedra
 from .profile import Profile, profile_through
-from .surface import Cone, Ellipsoid, HalfSpace, Surface
+from .surface import Cone, Ellipsoid, Surface
 
 DraftModel = Literal["geometric", "as_released"]
 
@@ -46,20 +46,9 @@ def _profile_body(profile: Profile, real: Callable[[Array], Array], bridged: Seq
     return _centred(surfaces, cells, (), mass)
 
 
-def _centred(
-    surfaces: Sequence[HalfSpace | Cone | Ellipsoid], cells: Sequence[Cell], rims: Sequence[Rim], mass: MassProperties
-) -> Body:
-    by = mass.centroid
-    moved = tuple(s if isinstance(s, Ellipsoid) else s.shifted(by) for s in surfaces)
-    cells = tuple(cell.moved(by) for cell in cells)
-    rims = tuple(Rim(rim.surfaces, rim.centre - by, rim.radius, rim.half_angle) for rim in rims)
-    far = [float(np.linalg.norm(point)) for cell in cells for point in cell.points]
-    for rim in rims:
-        angles = np.append(np.linspace(-rim.half_angle, rim.half_angle, 181), 0.0)
-        far += [
-            float(np.linalg.norm(rim.centre + rim.radius * np.array([0.0, math.sin(a), math.cos(a)]))) for a in angles
-        ]
-    return Body(moved, cells, rims, mass.volume, mass.inertia_per_mass, max(far))
+def _centred(surfaces: Sequence[Surface], cells: Sequence[Cell], rims: Sequence[Rim], mass: MassProperties) -> Body:
+    made = Body(tuple(surfaces), tuple(cells), tuple(rims), mass.volume, mass.inertia_per_mass, 0.0)
+    return made.with_centre_of_mass(mass.centroid)
 
 
 def cuboid(length: float, width: float, height: float, draft: float = 0.0) -> Body:

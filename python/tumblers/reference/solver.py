@@ -198,7 +198,7 @@ class Search:
         if beyond:
             names.append(candidate.cell.surfaces | {int(beyond[0])})
         low: Anchor = min(self.body.anchors(rotation), key=lambda anchor: float(rotation[2] @ anchor.point))
-        if position[2] + float(rotation[2] @ low.point) < -1e-11 * self.body.radius:
+        if position[2] + problem.yielded(z.p_n) + float(rotation[2] @ low.point) < -1e-11 * self.body.radius:
             names += [candidate.cell.surfaces & low.surfaces, low.surfaces]
         found = []
         if candidate.regime == "stick" and xi < 0.0:
@@ -245,7 +245,7 @@ class Search:
         V = guess.V.copy()
         V[3:] = 2.0 / self.problem.h * cayley_vector(rotation @ self.problem.rotation.T)
         r = rotation @ middle
-        V[2] = -(self.problem.state.position[2] + r[2]) / self.problem.h
+        V[2] = -(self.problem.state.position[2] + self.problem.yielded(guess.p_n) + r[2]) / self.problem.h
         return Guess(V, r, guess.p, guess.p_n)
 
     def smoothed(self, guesses: list[Guess]) -> bool:

@@ -5,14 +5,14 @@ Equations, with `ζ = (x, y, z)` in the body frame and every `f` in metres::
     half-space   f = n · ζ - c                                              ∇f = n
     cone         f = cos φ (ρ - ρ0 + (x - x0) tan φ),  ρ = hypot(y - y0, z - z0)
                  ∇f = (sin φ, cos φ (y - y0)/ρ, cos φ (z - z0)/ρ)
-    ellipsoid    f = (b/2) (Σ ζ_k²/A_k² - 1),  b = min A                    ∇f = b ζ_k/A_k²
+    ellipsoid    f = (b/2) (Σ (ζ_k - c_k)²/A_k² - 1),  b = min A            ∇f = b (ζ_k - c_k)/A_k²
 
 A body is where every one of its `f` is at most 0.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TypeAlias
 
 import numpy as np
@@ -96,29 +96,34 @@ class Cone:
 
 @dataclass(frozen=True, eq=False)
 class Ellipsoid:
-    """Ellipsoid about the origin, axes along the body frame's.
+    """Ellipsoid with axes along the body frame's.
 
     Parameters
     ----------
-    semi_axes : Array, shape (3,)
-        `A` [m].
+    semi_axes, centre : Array, shape (3,)
+        `A` and `c` [m].
     """
 
     semi_axes: Array
+    centre: Array = field(default_factory=lambda: np.zeros(3))
 
     def value(self, point: Array) -> float:
         """`f` [m] at `point`, shape (3,), body frame [m]."""
-        scaled = point / self.semi_axes
+        scaled = (point - self.centre) / self.semi_axes
         return 0.5 * float(self.semi_axes.min()) * (float(scaled @ scaled) - 1.0)
 
     def gradient(self, point: Array) -> Array:
         """`∇f`, shape (3,), body frame, dimensionless."""
-        return np.asarray(float(self.semi_axes.min()) * point / self.semi_axes**2)
+        return np.asarray(float(self.semi_axes.min()) * (point - self.centre) / self.semi_axes**2)
 
     def lowest(self, down: Array) -> Array:
         """Point farthest along the direction `down`, both body frame, shape (3,) [m]."""
         scaled = self.semi_axes * down
-        return np.asarray(self.semi_axes * scaled / np.linalg.norm(scaled))
+        return np.asarray(self.centre + self.semi_axes * scaled / np.linalg.norm(scaled))
+
+    def shifted(self, by: Array) -> Ellipsoid:
+        """The same surface after the body frame's origin moved to `by` [m]."""
+        return Ellipsoid(self.semi_axes, self.centre - by)
 
 
 Surface: TypeAlias = HalfSpace | Cone | Ellipsoid

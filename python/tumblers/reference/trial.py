@@ -8,6 +8,7 @@ import numpy as np
 
 from .array import Array
 from .parameters import State, Trial
+from .relief import Relief
 from .stepper import StepSolution, step
 
 
@@ -38,6 +39,11 @@ class Run:
     def quaternions(self) -> Array:
         """`Q`, shape (n + 1, 4), body to substrate."""
         return np.array([state.quaternion for state in self.states])
+
+    def seen(self, relief: Relief) -> tuple[Array, Array]:
+        """Positions, shape (n + 1, 3) [m], and quaternions, shape (n + 1, 4), as they are seen on `relief`."""
+        poses = [relief.seen(state.position, state.quaternion) for state in self.states]
+        return np.array([position for position, _ in poses]), np.array([quaternion for _, quaternion in poses])
 
 
 def run(trial: Trial, start: State | None = None) -> Run:

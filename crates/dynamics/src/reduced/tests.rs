@@ -2,7 +2,10 @@
 
 use super::*;
 use crate::trial::TrialParts;
-use crate::{Adhesion, AdhesionActsAt, AdhesionEnters, Field, MagneticTorque, Model, Robot, Stepper, Substrate, Trial};
+use crate::{
+    Adhesion, AdhesionActsAt, AdhesionEnters, Field, MagneticTorque, Model, Relief, Robot, Stepper, Substrate,
+    Surroundings, Trial,
+};
 use geometry::{Body, Draft, DraftModel};
 use nalgebra::Quaternion;
 use proptest::prelude::*;
@@ -23,6 +26,7 @@ fn trial(shape: usize, magnetic_torque: MagneticTorque, mu: f64) -> Trial {
             adhesion: 20.0,
             electrostatic_force: 1e-7,
             line_contact_width: 5e-6,
+            compliance: 4.0,
         },
         field: Field::rotating(0.02, 3.0, -Vec3::x(), Vec3::y()).unwrap(),
         model: Model {
@@ -30,7 +34,15 @@ fn trial(shape: usize, magnetic_torque: MagneticTorque, mu: f64) -> Trial {
             adhesion_acts_at: AdhesionActsAt::Ecp,
             adhesion_enters: AdhesionEnters::Normal,
         },
+        relief: Relief::new(2e-3, &[1e-5], &[2e-5]).unwrap(),
+        surroundings: Surroundings {
+            translational_drag: 2e-5,
+            rotational_drag: 1e-12,
+            sheet_conductance: 1e8,
+            ..Surroundings::none()
+        },
         incline: 0.3,
+        side_incline: 0.1,
         gravity: 9.8,
         duration: 1.0,
         step: 5e-4,

@@ -6,7 +6,8 @@ use nalgebra::Quaternion;
 use std::sync::Arc;
 use tumblers_dynamics::trial::TrialParts;
 use tumblers_dynamics::{
-    AdhesionActsAt, AdhesionEnters, Field, MagneticTorque, Model, Robot, StepSolution, Stepper, Substrate, Trial, Vec3,
+    AdhesionActsAt, AdhesionEnters, Field, MagneticTorque, Model, Relief, Robot, StepSolution, Stepper, Substrate,
+    Surroundings, Trial, Vec3,
 };
 
 pub const MODEL: Model = Model {
@@ -42,6 +43,7 @@ pub fn smooth(friction_coefficient: f64) -> Substrate {
         adhesion: 0.0,
         electrostatic_force: 0.0,
         line_contact_width: 0.0,
+        compliance: 0.0,
     }
 }
 
@@ -68,7 +70,10 @@ pub fn passive(body: Body, mass: f64, substrate: Substrate) -> TrialParts {
         substrate,
         field: no_field(),
         model: MODEL,
+        relief: Relief::flat(),
+        surroundings: Surroundings::none(),
         incline: 0.0,
+        side_incline: 0.0,
         gravity: 9.8,
         duration: 0.1,
         step: 5e-4,
@@ -100,6 +105,30 @@ pub fn pdms(body: Body, theta1_deg: f64, theta2_deg: f64) -> TrialParts {
         field: rotating(0.02, 1.0),
         ..passive(cuboid(), mass, aluminium_pdms())
     }
+}
+
+/// `parts` with every term that the paper does not have.
+pub fn disturbed(mut parts: TrialParts) -> TrialParts {
+    let weight = parts.robot.mass() * parts.gravity;
+    let body = parts.robot.body().with_center_of_mass([1e-5, -2e-5, 5e-6]).unwrap();
+    parts.robot = Robot::new(Arc::new(body), parts.robot.mass(), *parts.robot.moment()).unwrap();
+    parts.substrate.compliance = 0.5;
+    parts.field = parts.field.with_quadrature(1.2, 0.2).unwrap();
+    parts.side_incline = 0.05;
+    parts.relief = Relief::new(2e-3, &[6e-6, -3e-6], &[1e-5, 2e-6]).unwrap();
+    parts.surroundings = Surroundings {
+        force: Vec3::new(0.05, 0.1, 0.02) * weight,
+        torque: Vec3::new(0.1, -0.05, 0.02) * weight * 1e-4,
+        translational_drag: 5e-6,
+        rotational_drag: 1e-12,
+        sheet_conductance: 3e7,
+        times: Arc::new([0.01, 0.03]),
+        wrenches: Arc::new([
+            (Vec3::new(0.1, 0.0, -0.1) * weight, Vec3::zeros()),
+            (Vec3::zeros(), Vec3::new(0.0, 0.0, 1e-5) * weight),
+        ]),
+    };
+    parts
 }
 
 /// Runs to the end, checks what must hold at every step, and shows every step to `look`.

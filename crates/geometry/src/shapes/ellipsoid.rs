@@ -17,10 +17,10 @@ impl Body {
         for (name, value) in ["semi-axis x", "semi-axis y", "semi-axis z"].into_iter().zip(semi_axes) {
             GeometryError::positive(name, value)?;
         }
-        let semi_axes = Vector3::from(semi_axes);
+        let (semi_axes, centre) = (Vector3::from(semi_axes), Vector3::zeros());
         let parts = Parts {
-            surfaces: vec![Surface::Ellipsoid(EllipsoidSurface { semi_axes })],
-            generators: vec![Generator::Ellipsoid(EllipsoidGenerator { semi_axes })],
+            surfaces: vec![Surface::Ellipsoid(EllipsoidSurface { semi_axes, centre })],
+            generators: vec![Generator::Ellipsoid(EllipsoidGenerator { semi_axes, centre })],
             faces: Vec::new(),
             edges: Vec::new(),
             point_cones: vec![NormalCone::Curved([SurfaceSet::new(&[0]); 3])],

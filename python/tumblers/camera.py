@@ -1,0 +1,72 @@
+"""`Camera`: how a run is seen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cos, radians, sin
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .check import number
+
+__all__ = ["Camera"]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Camera:
+    """A camera that looks down on the substrate; it changes what is measured, not what moves.
+
+    Attributes
+    ----------
+    scale
+        Length seen over true length.
+    heading_deg
+        Angle by which what is seen is turned about +z, from +y towards -x, degrees.
+
+    Raises
+    ------
+    InputError
+        A number that is refused.
+    """
+
+    scale: float = 1.0
+    heading_deg: float = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "scale", number("camera.scale", self.scale, above=0.0))
+        object.__setattr__(self, "heading_deg", number("camera.heading_deg", self.heading_deg))
+
+    def seen_position(self, position_m: ArrayLike) -> NDArray[np.float64]:
+        """Return positions as they are seen: x and y turned and scaled, z as it is.
+
+        Parameters
+        ----------
+        position_m
+            Positions, substrate frame, m, shape (..., 3).
+        """
+        seen: NDArray[np.float64] = np.array(position_m, dtype=np.float64)
+        if self == Camera():
+            return seen
+        x, y = seen[..., 0].copy(), seen[..., 1].copy()
+        c, s = cos(radians(self.heading_deg)), sin(radians(self.heading_deg))
+        seen[..., 0] = self.scale * (c * x - s * y)
+        seen[..., 1] = self.scale * (s * x + c * y)
+        return seen
+
+    def seen_orientation(self, orientation: ArrayLike) -> NDArray[np.float64]:
+        """Return orientations as they are seen, turned by the heading about +z.
+
+        Parameters
+        ----------
+        orientation
+            Unit quaternions w, x, y, z, body to substrate, shape (..., 4).
+        """
+        seen: NDArray[np.float64] = np.array(orientation, dtype=np.float64)
+        if self.heading_deg == 0.0:
+            return seen
+        w, x, y, z = (seen[..., i].copy() for i in range(4))
+        c, s = cos(0.5 * radians(self.heading_deg)), sin(0.5 * radians(self.heading_deg))
+        turned: Any = (c * w - s * z, c * x - s * y, c * y + s * x, c * z + s * w)
+        return np.stack(turned, axis=-1)
