@@ -1,0 +1,110 @@
+"""The files of a dataset: their texts, and writing them."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping
+from contextlib import ExitStack, suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..atomic import write_files
+from ..field import field_to_table
+from ..section import as_section, write_section
+from .track_csv import write_track_csv
+
+if TYPE_CHECKING:
+    from .dataset import Dataset
+    from .lab_trial import LabTrial
+
+__all__ = ["write_dataset"]
+
+_FILE_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_+-]{0,63}")
+
+
+def write_dataset(dataset: Dataset, directory: Path, version: str) -> None:
+    """Write a dataset to a folder, whole or not at all.
+
+    Parameters
+    ----------
+    dataset
+        The dataset.
+    directory
+        The folder, made if it does not exist.
+    version
+        The name of the format.
+
+    Raises
+    ------
+    OSError
+        A folder that cannot be made or written to, or a full disk.
+    """
+    names = _track_names(dataset)
+    contents = {
+        directory / name: write_track_csv(trial.track).encode()
+        for name, trial in zip(names, dataset.trials, strict=True)
+        if trial.track is not None
+    }
+    # The file that names the others comes last.
+    contents[directory / "dataset.toml"] = _to_toml(dataset, names, version).encode()
+    with ExitStack() as undo:
+        for folder in sorted({parent for path in contents for parent in path.parents}, key=lambda p: len(p.parts)):
+            if not folder.exists():
+                folder.mkdir(exist_ok=True)
+                undo.callback(_remove_empty, folder)
+        write_files(contents)
+        undo.pop_all()
+
+
+def _remove_empty(folder: Path) -> None:
+    with suppress(OSError):
+        folder.rmdir()
+
+
+def _track_names(dataset: Dataset) -> list[str]:
+    """Return a file for each trial's track: by its id where all ids are file names, otherwise by its number."""
+    ids = [trial.id for trial in dataset.trials]
+    if all(_FILE_NAME.fullmatch(id_) for id_ in ids) and len({id_.casefold() for id_ in ids}) == len(ids):
+        return [f"tracks/{id_}.csv" for id_ in ids]
+    return [f"tracks/{i:03d}.csv" for i in range(len(ids))]
+
+
+def _to_toml(dataset: Dataset, names: list[str], version: str) -> str:
+    model = {name: getattr(dataset.model, name) for name in dataset.model_given}
+    return "\n".join(
+        [
+            f"format = {_toml(version)}\ntitle = {_toml(dataset.title)}\n",
+            write_section("robot", dataset.robot.to_table()),
+            write_section("substrate", as_section(dataset.substrate)),
+            *([write_section("model", model)] if model else []),
+            write_section("sensor", as_section(dataset.sensor)),
+            *(_trial(trial, name) for trial, name in zip(dataset.trials, names, strict=True)),
+        ]
+    )
+
+
+def _trial(trial: LabTrial, name: str) -> str:
+    table = as_section(trial)
+    table["field"] = field_to_table(trial.field)
+    if trial.track is not None:
+        table["track"] = name
+    if trial.outcome is not None:
+        table["outcome"] = as_section(trial.outcome)
+    return "\n".join(["[[trial]]", *(f"{key} = {_toml(value)}" for key, value in table.items())]) + "\n"
+
+
+def _toml(value: object) -> str:
+    match value:
+        case bool():
+            return "true" if value else "false"
+        case str():
+            # Printable text needs no other escapes than those of JSON.
+            return json.dumps(value, ensure_ascii=False)
+        case float():
+            return repr(value)
+        case tuple():
+            return f"[{', '.join(_toml(entry) for entry in value)}]"
+        case Mapping():
+            return f"{{ {', '.join(f'{key} = {_toml(entry)}' for key, entry in value.items())} }}"
+    raise TypeError(f"no TOML for {value!r}")

@@ -1,0 +1,156 @@
+"""Reading a dataset's folder."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import fields
+from os import PathLike
+from pathlib import Path
+from typing import TypeVar
+
+from ..check import text
+from ..errors import InputError, show, unreadable
+from ..field import Field, field_from_table
+from ..model import Model
+from ..robot import Robot
+from ..section import known_keys, read_section, require_table
+from ..substrate import Substrate
+from ..toml import parse_toml
+from .dataset import FORMAT, Dataset
+from .lab_trial import LabTrial
+from .outcome import Outcome
+from .sensor import TYPICAL_ANGLE_NOISE_DEG, TYPICAL_POSITION_NOISE_M, Sensor
+from .track import ANGLES, Track
+from .track_csv import read_track_csv
+
+__all__ = ["load"]
+
+_FILE = "dataset.toml"
+_REQUIRED = ("format", "robot", "substrate", "trial")
+_TYPICAL = {"position_noise_m": TYPICAL_POSITION_NOISE_M, "angle_noise_deg": TYPICAL_ANGLE_NOISE_DEG}
+T = TypeVar("T")
+
+
+def load(path: str | PathLike[str]) -> Dataset:
+    """Return the dataset of a folder, checked as a whole, its tracks read.
+
+    Parameters
+    ----------
+    path
+        The folder, or the ``dataset.toml`` in it.
+
+    Raises
+    ------
+    InputError
+        One line that names the file, the key, what was found and what was expected.
+    """
+    file = Path(path)
+    try:
+        if file.is_dir():
+            file /= _FILE
+        contents = file.read_bytes().decode("utf-8-sig")
+    except OSError as error:
+        raise InputError(None, unreadable(error), f"a {FORMAT} file", file) from None
+    except ValueError as error:
+        raise InputError(None, unreadable(error), f"a {FORMAT} file", repr(str(file))[1:-1]) from None
+    try:
+        return _dataset(contents, file.parent)
+    except InputError as error:
+        raise error.in_file(file) from None
+
+
+def _dataset(contents: str, directory: Path) -> Dataset:
+    table = parse_toml(contents)
+    if "format" in table and table["format"] != FORMAT:
+        raise InputError("format", show(table["format"]), f"'{FORMAT}'")
+    known_keys("", table, [*_REQUIRED, "title", "model", "sensor"], _REQUIRED)
+    if not isinstance(table["trial"], list):
+        raise InputError("trial", show(table["trial"]), "an array of tables [[trial]]")
+    robot = Robot.from_table(table["robot"])
+    substrate = read_section(Substrate, "substrate", table["substrate"])
+    model = read_section(Model, "model", table.get("model", {}))
+    stated = require_table("sensor", table.get("sensor", {}))
+    sensor = read_section(Sensor, "sensor", {**_TYPICAL, **stated})
+    trials = tuple(_trial(i, entry, directory, sensor) for i, entry in enumerate(table["trial"]))
+    for i, trial in enumerate(trials):
+        if trial.track is not None:
+            _noise_is_stated(stated, i, trial.track)
+    return Dataset(
+        title=table.get("title", ""),
+        robot=robot,
+        substrate=substrate,
+        model=model,
+        sensor=sensor,
+        trials=trials,
+        model_given=tuple(table.get("model", {})),
+        directory=directory,
+    )
+
+
+def _noise_is_stated(stated: Mapping[str, object], i: int, track: Track) -> None:
+    for channel in track.channels:
+        angle = channel in ANGLES
+        # A sensor of heights may be another one than the camera.
+        keys = ["angle_noise_deg"] if angle else ["z_noise_m"] * (channel == "z_m") + ["position_noise_m"]
+        if not any(key in stated for key in keys):
+            raise InputError(f"sensor.{keys[-1]}", "no such key", f"the noise of {channel} in trial[{i}].track")
+
+
+def _trial(i: int, value: object, directory: Path, sensor: Sensor) -> LabTrial:
+    key = f"trial[{i}]"
+    table = dict(require_table(key, value))
+    names = [f.name for f in fields(LabTrial)]
+    known_keys(key, table, names, ["id", "field", "duration_s"])
+
+    def read(name: str, reader: Callable[[object], T]) -> T | None:
+        return reader(table[name]) if name in table else None
+
+    try:
+        made = {
+            "field": _field(table["field"], directory),
+            "track": read("track", lambda entry: _track(entry, directory, sensor)),
+            "outcome": read("outcome", lambda entry: read_section(Outcome, "outcome", entry)),
+        }
+        return LabTrial(**(table | made))  # type: ignore[arg-type]
+    except InputError as error:
+        raise _in_trial(error, key) from None
+
+
+def _in_trial(error: InputError, key: str) -> InputError:
+    where = error.key or ""
+    if where.startswith("sensor."):
+        return error
+    return InputError(f"{key}.{where.removeprefix('trial.')}", error.found, error.expected)
+
+
+def _field(value: object, directory: Path) -> Field:
+    table = require_table("field", value)
+    if isinstance(table.get("csv"), str):
+        _inside("field.csv", table["csv"], directory)
+    return field_from_table(table, directory)
+
+
+def _track(value: object, directory: Path, sensor: Sensor) -> Track:
+    path = _inside("track", text("track", value, "a path"), directory)
+    return read_track_csv("track", path, repr(str(value))[1:-1], sensor)
+
+
+def _inside(key: str, name: object, directory: Path) -> Path:
+    """Return the path of a file in the dataset's folder, or refuse one that is elsewhere or no file."""
+    path = Path(str(name))
+    if path.is_absolute():
+        raise InputError(key, show(name), "a path that starts at the dataset's folder")
+    try:
+        found = (directory / path).resolve()
+        if not found.is_relative_to(directory.resolve()):
+            raise InputError(key, f"{show(name)}, which leads out of the dataset's folder", "a file in it")
+        # A pipe or a device would be waited for without end.
+        if found.exists() and not found.is_file() and not found.is_dir():
+            raise InputError(key, f"{show(name)}, which is no regular file", "a readable CSV file")
+    except (OSError, RuntimeError):
+        raise InputError(key, f"{show(name)}, which cannot be followed", "a file in the dataset's folder") from None
+    except ValueError as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(key, f"{show(name)}: {unreadable(error)}", "a file in the dataset's folder") from None
+    return found

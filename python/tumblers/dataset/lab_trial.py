@@ -1,0 +1,126 @@
+"""`LabTrial`: one trial of a lab and what was seen of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ..check import number
+from ..errors import InputError, show
+from ..field import Field, TableField
+from ..model import Model
+from ..run import Run
+from ..scenario import Scenario
+from .outcome import Outcome
+from .track import Track
+
+if TYPE_CHECKING:
+    from .dataset import Dataset
+
+__all__ = ["LabTrial"]
+
+# A clock that is off by half a frame moves the first frame before the start and the last one beyond the end.
+_SLACK_FRAMES = 0.5
+_SLACK_S = 5e-3
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class LabTrial:
+    """One trial: its conditions and its observations.
+
+    The robot starts at rest on the substrate, long axis along +y; time zero is the field's start.
+
+    Attributes
+    ----------
+    id
+        Its name, unlike that of every other trial of the dataset.
+    field
+        The magnetic field.
+    duration_s
+        Time of the trial, s.
+    incline_deg
+        Slope of the substrate along +y, degrees.
+    gravity_m_per_s2
+        g, m/s².
+    track, outcome
+        What was seen, frame by frame and as a whole: at least one of them.
+
+    Raises
+    ------
+    InputError
+        A number that is refused, a tabulated field that does not cover the trial, rows of the track that are outside
+        the trial by more than half a frame, or no observation.
+    """
+
+    id: str
+    field: Field
+    duration_s: float
+    incline_deg: float = 0.0
+    gravity_m_per_s2: float = 9.8
+    track: Track | None = None
+    outcome: Outcome | None = None
+
+    def __post_init__(self) -> None:
+        def put(name: str, value: float) -> None:
+            object.__setattr__(self, name, value)
+
+        # A name goes to terminals, reports and file names.
+        if not isinstance(self.id, str) or not self.id.strip() or not self.id.isprintable():
+            raise InputError("trial.id", show(self.id), "a name of printable characters")
+        if not isinstance(self.field, Field):
+            raise InputError("trial.field", show(self.field), "a Field")
+        put("duration_s", number("trial.duration_s", self.duration_s, above=0.0))
+        put("incline_deg", number("trial.incline_deg", self.incline_deg, above=-90.0, below=90.0))
+        put("gravity_m_per_s2", number("trial.gravity_m_per_s2", self.gravity_m_per_s2, least=0.0))
+        if isinstance(self.field, TableField):
+            self.field.covers(self.duration_s)
+        if self.track is not None and not isinstance(self.track, Track):
+            raise InputError("trial.track", show(self.track), "a Track")
+        if self.outcome is not None and not isinstance(self.outcome, Outcome):
+            raise InputError("trial.outcome", show(self.outcome), "an Outcome")
+        if self.track is None and self.outcome is None:
+            raise InputError("trial.track", "neither a track nor an outcome", "at least one of them")
+        if self.track is not None and self.track.time_s.size:
+            self._covers(self.track)
+
+    def _covers(self, track: Track) -> None:
+        slack = max(_SLACK_S, _SLACK_FRAMES * track.frame_interval_s) if track.time_s.size > 1 else _SLACK_S
+        for time in (float(track.time_s[0]), float(track.time_s[-1])):
+            if not -slack <= time <= self.duration_s + slack:
+                expected = f"times from 0 s to duration_s, {self.duration_s:g} s, give or take half a frame"
+                raise InputError("trial.track", f"a row at {time:g} s", expected)
+
+    def scenario(
+        self, dataset: Dataset, step_s: float, *, model: Model | None = None, output_every_s: float | None = None
+    ) -> Scenario:
+        """Return the nominal run of this trial: what the lab believes that it should have seen.
+
+        Parameters
+        ----------
+        dataset
+            Where the robot, the substrate and the model come from.
+        step_s
+            Step, s.
+        model
+            Switches in place of the dataset's.
+        output_every_s
+            Time between two rows of the result, s; every step if None.
+
+        Raises
+        ------
+        InputError
+            A step that this trial's field or duration does not allow.
+        """
+        return Scenario(
+            robot=dataset.robot,
+            substrate=dataset.substrate,
+            field=self.field,
+            run=Run(
+                duration_s=self.duration_s,
+                step_s=step_s,
+                incline_deg=self.incline_deg,
+                output_every_s=output_every_s,
+                gravity_m_per_s2=self.gravity_m_per_s2,
+            ),
+            model=dataset.model if model is None else model,
+        )

@@ -1,0 +1,108 @@
+"""`Sensor`: how well, and in which units, the tracks were measured."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import hypot
+from typing import Literal, get_args
+
+from ..check import choice, number, sequence
+from ..errors import InputError, show
+
+__all__ = ["TYPICAL_ANGLE_NOISE_DEG", "TYPICAL_POSITION_NOISE_M", "Pixel", "Sensor", "TrackedPoint"]
+
+Pixel = tuple[float, float]
+TrackedPoint = Literal["body_centre", "centre_of_mass"]
+
+# What stands in a dataset without tracks, for trials that are only proposed.
+TYPICAL_POSITION_NOISE_M = 5.0e-6
+TYPICAL_ANGLE_NOISE_DEG = 1.0
+
+_UNIT = 1e-12
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Sensor:
+    """A camera: its noise, its units and how far off it may be.
+
+    Attributes
+    ----------
+    position_noise_m, angle_noise_deg
+        One standard deviation of x and y, m, and of every angle, degrees.
+    z_noise_m
+        One standard deviation of z, m; `position_noise_m` if None.
+    micrometres_per_pixel, frames_per_second
+        Units of tracks in pixels and in frames.
+    origin_px
+        Pixel of the robot's start; the first frame in which a track has the robot if None.
+    y_axis_px
+        Direction of the substrate's +y in the image, whose x points right and y down; normalised.
+    time_offset_s
+        How far the track's clock may be off, s; half a frame if None.
+    origin_tolerance_m, heading_tolerance_deg, scale_tolerance
+        How far the track's origin (m), heading (degrees) and scale (a fraction) may be off.
+    tracked_point
+        What the positions are of: ``body_centre``, the centre of the body's shape, or ``centre_of_mass``.
+
+    Raises
+    ------
+    InputError
+        A number, a direction or a word that is refused.
+    """
+
+    position_noise_m: float
+    angle_noise_deg: float
+    z_noise_m: float | None = None
+    micrometres_per_pixel: float | None = None
+    frames_per_second: float | None = None
+    origin_px: Pixel | None = None
+    y_axis_px: Pixel = (0.0, -1.0)
+    time_offset_s: float | None = None
+    origin_tolerance_m: float = 50e-6
+    heading_tolerance_deg: float = 2.0
+    scale_tolerance: float = 0.005
+    tracked_point: TrackedPoint = "body_centre"
+
+    def __post_init__(self) -> None:
+        def put(name: str, value: object) -> None:
+            object.__setattr__(self, name, value)
+
+        for name in ("position_noise_m", "angle_noise_deg", "z_noise_m", "micrometres_per_pixel", "frames_per_second"):
+            if getattr(self, name) is not None or name in ("position_noise_m", "angle_noise_deg"):
+                put(name, number(f"sensor.{name}", getattr(self, name), above=0.0))
+        if self.time_offset_s is not None:
+            put("time_offset_s", number("sensor.time_offset_s", self.time_offset_s, least=0.0))
+        put("origin_tolerance_m", number("sensor.origin_tolerance_m", self.origin_tolerance_m, least=0.0))
+        heading = number("sensor.heading_tolerance_deg", self.heading_tolerance_deg, least=0.0, most=180.0)
+        put("heading_tolerance_deg", heading)
+        put("scale_tolerance", number("sensor.scale_tolerance", self.scale_tolerance, least=0.0, below=1.0))
+        if self.origin_px is not None:
+            put("origin_px", _pixel("sensor.origin_px", self.origin_px))
+        put("y_axis_px", _direction("sensor.y_axis_px", self.y_axis_px))
+        choice("sensor.tracked_point", self.tracked_point, get_args(TrackedPoint))
+
+    @property
+    def x_axis_px(self) -> Pixel:
+        """Direction of the substrate's +x in the image: to the right of +y as seen from above, x = y × z."""
+        right, down = self.y_axis_px
+        return -down, right
+
+
+def _pixel(key: str, value: object) -> Pixel:
+    expected = "a list of 2 numbers"
+    found = sequence(key, value, expected, number)
+    if len(found) != 2:
+        raise InputError(key, show(value), expected)
+    return found[0], found[1]
+
+
+def _direction(key: str, value: object) -> Pixel:
+    x, y = _pixel(key, value)
+    scale = max(abs(x), abs(y))
+    if scale == 0.0:
+        raise InputError(key, show(value), "a direction that is not zero")
+    if abs(hypot(x, y) - 1.0) <= _UNIT:
+        return x, y
+    # The larger component first, so that no length under- or overflows.
+    x, y = x / scale, y / scale
+    return x / hypot(x, y), y / hypot(x, y)

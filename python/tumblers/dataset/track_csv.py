@@ -1,0 +1,170 @@
+"""The CSV of a track."""
+
+from __future__ import annotations
+
+import csv
+import io
+from dataclasses import dataclass
+from math import isfinite
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import InputError, show, unreadable
+from .pixels import to_substrate
+from .sensor import Sensor
+from .track import CHANNELS, QUATERNION, Array, Track, find_fault
+
+__all__ = ["read_track_csv", "write_track_csv"]
+
+_PIXELS = (("x_px", "y_px"), ("x", "y"))
+# What trackpy and pandas write beside frame, x and y; it says nothing about where the robot is.
+_PASSED_OVER = ("particle", "mass", "size", "ecc", "signal", "raw_mass", "ep", "")
+_LOST = "a finite number, or an empty cell for a lost frame"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Table:
+    """The cells of a file, with what an error needs to name one of them."""
+
+    key: str
+    name: str
+    lines: list[int]
+    cells: dict[str, list[str]]
+
+    def refuse(self, row: int, column: str, found: str, expected: str) -> InputError:
+        return InputError(self.key, f"{self.name} line {self.lines[row]}: {column} {found}", expected)
+
+    def numbers(self, column: str, expected: str, *, lost: bool) -> Array:
+        values = np.full(len(self.lines), np.nan)
+        for row, cell in enumerate(self.cells[column]):
+            if lost and not cell:
+                continue
+            try:
+                values[row] = float(cell)
+            except ValueError:
+                raise self.refuse(row, column, show(cell), expected) from None
+            if not isfinite(values[row]):
+                raise self.refuse(row, column, show(cell), expected)
+        return values
+
+
+def read_track_csv(key: str, path: Path, name: str, sensor: Sensor) -> Track:
+    """Return the track of a CSV.
+
+    The times are a column ``time_s`` or, with `frames_per_second`, ``frame``. Beside it stand any of `CHANNELS`, where
+    ``x_px, y_px`` (beside ``frame`` also ``x, y``, as trackpy writes them) may stand for ``x_m, y_m``.
+
+    Parameters
+    ----------
+    key
+        The key that names the file, for errors.
+    path, name
+        The file, and what to call it in errors.
+    sensor
+        Units of pixels and frames.
+
+    Raises
+    ------
+    InputError
+        A file that cannot be read, other columns, two particles, a cell that is no number, rows that are out of order,
+        or units that the sensor does not state.
+    """
+    table = _read(key, path, name)
+    clock, pixels = _columns(table)
+    _one_particle(table)
+    if clock == "frame":
+        if sensor.frames_per_second is None:
+            raise InputError("sensor.frames_per_second", "no such key", f"it, for the frames of {name}")
+        frames = table.numbers("frame", "a whole number", lost=False)
+        for row in np.flatnonzero(frames != np.round(frames)):
+            raise table.refuse(int(row), "frame", show(table.cells["frame"][row]), "a whole number")
+        time = frames / sensor.frames_per_second
+    else:
+        time = table.numbers("time_s", "a finite number", lost=False)
+    channels = {column: table.numbers(column, _LOST, lost=True) for column in CHANNELS if column in table.cells}
+    if pixels is not None:
+        x, y = (table.numbers(column, _LOST, lost=True) for column in pixels)
+        for row in np.flatnonzero(np.isnan(x) != np.isnan(y)):
+            missing = pixels[0] if np.isnan(x[row]) else pixels[1]
+            raise table.refuse(int(row), missing, "nothing beside the other", "both pixels or none")
+        channels["x_m"], channels["y_m"] = to_substrate(x, y, sensor)
+    fault = find_fault(time, channels)
+    if fault is not None:
+        column = clock if fault.column == "time_s" else fault.column
+        raise table.refuse(fault.row, column, fault.found, fault.expected)
+    return Track(time_s=time, channels=channels)
+
+
+def write_track_csv(track: Track) -> str:
+    """Return the CSV that `read_track_csv` reads to the same bits.
+
+    Parameters
+    ----------
+    track
+        The track.
+    """
+    file = io.StringIO()
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(["time_s", *track.channels])
+    for row in zip(track.time_s.tolist(), *(values.tolist() for values in track.channels.values()), strict=True):
+        writer.writerow(repr(value) if isfinite(value) else "" for value in row)
+    return file.getvalue()
+
+
+def _read(key: str, path: Path, name: str) -> _Table:
+    try:
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
+    except (OSError, ValueError) as error:
+        raise InputError(key, f"{unreadable(error)}: {name}", "a readable CSV file") from None
+    try:
+        rows = [(line, [cell.strip() for cell in row]) for line, row in enumerate(csv.reader(lines, strict=True), 1)]
+    except csv.Error as error:
+        raise InputError(key, f"{name}: {error}", "a CSV file") from None
+    rows = [(line, row) for line, row in rows if row]
+    header = rows[0][1] if rows else []
+    for line, row in rows[1:]:
+        if len(row) != len(header):
+            raise InputError(key, f"{name} line {line} with {len(row)} cells", f"{len(header)}")
+    for column in header:
+        if header.count(column) > 1:
+            raise InputError(key, f"{name} with two columns {show(column)}", "each column once")
+    cells = {column: [row[i] for _, row in rows[1:]] for i, column in enumerate(header)}
+    return _Table(key=key, name=name, lines=[line for line, _ in rows[1:]], cells=cells)
+
+
+def _columns(table: _Table) -> tuple[str, tuple[str, str] | None]:
+    """Return the column of the times and the columns of the pixels, if any."""
+
+    def refuse(expected: str) -> InputError:
+        return InputError(table.key, f"{table.name} with the columns {show(list(table.cells))}", expected)
+
+    clocks = [column for column in ("time_s", "frame") if column in table.cells]
+    if len(clocks) != 1:
+        raise refuse("one column time_s, or one column frame")
+    trackpy = clocks == ["frame"]
+    pairs = [pair for pair in _PIXELS if pair[0] in table.cells or pair[1] in table.cells]
+    if not trackpy and ("x", "y") in pairs:
+        raise refuse("x_m and y_m, or x_px and y_px, beside time_s")
+    metres = "x_m" in table.cells or "y_m" in table.cells
+    if len(pairs) + metres > 1 or any(column not in table.cells for pair in pairs for column in pair):
+        raise refuse("x and y once, both in pixels or in metres")
+    known = [*clocks, *CHANNELS, *(column for pair in pairs for column in pair), *(_PASSED_OVER if trackpy else ())]
+    for column in table.cells:
+        if column not in known:
+            raise InputError(
+                table.key,
+                f"{table.name} with a column {show(column)}",
+                f"time_s and any of {', '.join(CHANNELS)}, or frame, x, y",
+            )
+    if not pairs and not any(column in table.cells for column in CHANNELS):
+        raise refuse(f"any of {', '.join(CHANNELS)} beside {clocks[0]}")
+    if any(column in table.cells for column in QUATERNION) and not all(column in table.cells for column in QUATERNION):
+        raise refuse(f"all of {', '.join(QUATERNION)} or none")
+    return clocks[0], pairs[0] if pairs else None
+
+
+def _one_particle(table: _Table) -> None:
+    particles = sorted({cell for cell in table.cells.get("particle", []) if cell})
+    if len(particles) > 1:
+        raise InputError(table.key, f"{table.name} with the particles {show(particles)}", "the rows of a single one")

@@ -1,0 +1,39 @@
+from __future__ import annotations
+
+import re
+from dataclasses import fields
+from pathlib import Path
+
+import numpy as np
+
+from tumblers import dataset
+from tumblers.dataset import CHANNELS, LabTrial, Outcome, Sensor
+
+TEXT = (Path(__file__).parents[1] / "docs" / "dataset.md").read_text(encoding="utf-8")
+
+
+def test_the_example_loads(tmp_path: Path) -> None:
+    toml = re.search(r"```toml\n(.*?)```", TEXT, re.DOTALL)
+    tracks = re.findall(r"`(tracks/\w+\.csv)`[^`]*```csv\n(.*?)```", TEXT, re.DOTALL)
+    assert toml is not None
+    assert len(tracks) == 2
+    (tmp_path / "tracks").mkdir()
+    (tmp_path / "dataset.toml").write_text(toml[1], encoding="utf-8")
+    for name, text in tracks:
+        (tmp_path / name).write_text(text, encoding="utf-8")
+
+    data = dataset.load(tmp_path)
+    assert [trial.id for trial in data.trials] == ["f05", "f08", "slope30", "f15", "tilt05"]
+    metres, pixels = data.trial("f05").track, data.trial("f08").track
+    assert metres is not None
+    assert pixels is not None
+    assert metres.frames == 3
+    np.testing.assert_allclose(pixels.time_s, [0.0, 0.02, 0.06])
+    np.testing.assert_allclose(pixels.channels["y_m"], [-0.2 * 6.5e-6, 20.5 * 6.5e-6, 69.0 * 6.5e-6])
+    for trial in data.trials:
+        trial.scenario(data, 5e-4).trial()
+
+
+def test_every_key_of_the_format_is_explained() -> None:
+    for key in {f.name for part in (Sensor, LabTrial, Outcome) for f in fields(part)} | set(CHANNELS):
+        assert f"`{key}`" in TEXT, key

@@ -1,0 +1,152 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tumblers import InputError
+from tumblers.dataset import Sensor, Track
+from tumblers.dataset.track_csv import read_track_csv
+
+PIXELS = {"position_noise_m": 3e-6, "angle_noise_deg": 1.0, "micrometres_per_pixel": 10.0, "frames_per_second": 50.0}
+
+
+def read(folder: Path, text: str | bytes, **sensor: object) -> Track:
+    path = folder / "t.csv"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return read_track_csv("track", path, "t.csv", Sensor(**PIXELS | sensor))  # type: ignore[arg-type]
+
+
+def test_lost_frames_are_nan_and_counted(tmp_path: Path) -> None:
+    track = read(tmp_path, "time_s,y_m,z_m\n0,0,1e-4\n0.1,,\n0.2,,2e-4\n0.5,3e-4,\n")
+    np.testing.assert_array_equal(track.channels["y_m"], [0.0, np.nan, np.nan, 3e-4])
+    assert track.frames == 3
+    assert track.frame_interval_s == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize("text", ["time_s,y_m\n", "time_s,y_m\n0,\n", "frame,x,y\n", "frame,x,y\n0,,\n7,,\n"])
+def test_a_track_without_a_frame_loads(tmp_path: Path, text: str) -> None:
+    track = read(tmp_path, text)
+    assert track.frames == 0
+    assert np.isnan(track.frame_interval_s) == (track.time_s.size < 2)
+
+
+def test_byte_order_marks_windows_lines_and_spaces_are_welcome(tmp_path: Path) -> None:
+    track = read(tmp_path, b"\xef\xbb\xbftime_s, x_m \r\n0.0, 1e-6\r\n\r\n0.1, \r\n")
+    np.testing.assert_array_equal(track.channels["x_m"], [1e-6, np.nan])
+
+
+def test_trackpy_columns_with_their_index(tmp_path: Path) -> None:
+    track = read(
+        tmp_path,
+        ",y,x,mass,size,ecc,signal,raw_mass,ep,frame,particle\n0,100,50,9,2,,1,9,,0,3\n1,98,51,9,2,0.1,1,9,0.1,5,3\n",
+    )
+    assert list(track.channels) == ["x_m", "y_m"]
+    np.testing.assert_allclose(track.time_s, [0.0, 0.1])
+    np.testing.assert_allclose(track.channels["x_m"], [0.0, 1e-5], atol=1e-18)
+    np.testing.assert_allclose(track.channels["y_m"], [0.0, 2e-5], atol=1e-18)
+
+
+@pytest.mark.parametrize(
+    ("y_axis", "x", "y"),
+    [
+        # A step of 3 px to the right and 1 px down, seen from above.
+        ([0, -1], 3, -1),  # +y up, +x right
+        ([1, 0], 1, 3),  # +y right, +x down
+        ([0, 5], -3, 1),  # +y down, +x left
+        ([-2, 0], -1, -3),  # +y left, +x up
+        ([1, 1], -2 / np.sqrt(2), 4 / np.sqrt(2)),  # +y down to the right, +x down to the left
+    ],
+)
+def test_the_image_axes(tmp_path: Path, y_axis: list[float], x: float, y: float) -> None:
+    track = read(tmp_path, "time_s,x_px,y_px\n0,,\n0.1,7,7\n0.2,10,8\n", y_axis_px=y_axis)
+    np.testing.assert_allclose(track.channels["x_m"], [np.nan, 0, x * 1e-5], atol=1e-15)
+    np.testing.assert_allclose(track.channels["y_m"], [np.nan, 0, y * 1e-5], atol=1e-15)
+
+
+def test_a_stated_origin_is_kept(tmp_path: Path) -> None:
+    track = read(tmp_path, "time_s,x_px,y_px\n0.1,7,7\n", origin_px=[6, 9])
+    assert (track.channels["x_m"][0], track.channels["y_m"][0]) == pytest.approx((1e-5, 2e-5))
+
+
+@given(st.floats(0.951, 1.049))
+def test_quaternions_are_normalised(length: float) -> None:
+    whole = np.array([0.5, -0.5, 0.5, 0.5]) * length
+    channels = {name: [value, np.nan] for name, value in zip(("qw", "qx", "qy", "qz"), whole, strict=True)}
+    track = Track(time_s=[0.0, 1.0], channels=channels)
+    np.testing.assert_allclose([track.channels[n][0] for n in channels], [0.5, -0.5, 0.5, 0.5], rtol=1e-12)
+
+
+# Each: the file, the words of the line.
+REFUSED = [
+    ("", "t.csv with the columns [], expected one column time_s, or one column frame"),
+    ("x_m\n0\n", "expected one column time_s, or one column frame"),
+    ("time_s,frame,x_m\n0,0,0\n", "expected one column time_s, or one column frame"),
+    ("time_s\n0\n", "expected any of x_m,"),
+    ("time_s,x\n0,0\n", "x_m and y_m, or x_px and y_px, beside time_s"),
+    ("time_s,x_px\n0,0\n", "x and y once, both in pixels or in metres"),
+    ("frame,x,y,x_m\n0,0,0,0\n", "x and y once"),
+    ("frame,x,y,x_px,y_px\n0,0,0,0,0\n", "x and y once"),
+    ("time_s,x_m,x_m\n0,0,0\n", "two columns 'x_m', expected each column once"),
+    ("time_s,x_mm\n0,0\n", "a column 'x_mm', expected time_s and any of x_m,"),
+    ("time_s,x_m,mass\n0,0,0\n", "a column 'mass'"),
+    ("time_s;x_m\n0;0\n", "expected one column time_s"),
+    ("time_s,qw,qx,qy\n0,1,0,0\n", "expected all of qw, qx, qy, qz or none"),
+    ("time_s,x_m\n0,0\n0.1,fast\n", "t.csv line 3: x_m 'fast', expected a finite number, or an empty cell"),
+    ("time_s,x_m\n\n0,nan\n", "t.csv line 3: x_m 'nan'"),
+    ("time_s,x_m\n0,inf\n", "t.csv line 2: x_m 'inf'"),
+    ("time_s,x_m\n,0\n", "t.csv line 2: time_s '', expected a finite number"),
+    ("time_s,x_m\n0\n", "t.csv line 2 with 1 cells, expected 2"),
+    ("time_s,x_m\n0.2,0\n0.1,0\n", "t.csv line 3: time_s 0.1 s after 0.2 s, expected times that increase"),
+    ("time_s,x_m\n0.2,0\n0.2,0\n", "t.csv line 3: time_s 0.2 s a second time, expected times that increase"),
+    ("frame,x,y\n5,0,0\n4,0,0\n", "t.csv line 3: frame 0.08 s after 0.1 s"),
+    ("frame,x,y\n0.5,0,0\n", "t.csv line 2: frame '0.5', expected a whole number"),
+    ("frame,x,y,particle\n0,0,0,1\n0,0,0,2\n", "the particles ['1', '2'], expected the rows of a single one"),
+    ("frame,x,y\n0,1,\n", "t.csv line 2: y nothing beside the other, expected both pixels or none"),
+    ("time_s,qw,qx,qy,qz\n0,1,,0,0\n", "t.csv line 2: qx nothing beside the others, expected a whole quaternion"),
+    ("time_s,qw,qx,qy,qz\n0,1,0,0,0\n1,1,1,0,0\n", "t.csv line 3: qw a quaternion of length 1.414, expected length 1"),
+    ('time_s,x_m\n0,"1\n', "t.csv: unexpected end of data, expected a CSV file"),
+    (b"time_s,x_m\n0,\xff\n", "bytes that are no UTF-8 text: t.csv, expected a readable CSV file"),
+]
+
+
+@pytest.mark.parametrize(("text", "words"), REFUSED)
+def test_a_file_is_refused_in_one_line(tmp_path: Path, text: str | bytes, words: str) -> None:
+    with pytest.raises(InputError) as caught:
+        read(tmp_path, text)
+    line = str(caught.value)
+    assert words in line
+    assert line.startswith(("track: found t.csv", "track: found bytes"))
+    assert "\n" not in line
+
+
+@pytest.mark.parametrize(
+    ("key", "text"),
+    [("micrometres_per_pixel", "time_s,x_px,y_px\n0,0,0\n"), ("frames_per_second", "frame,x_m\n0,0\n")],
+)
+def test_units_have_to_be_stated(tmp_path: Path, key: str, text: str) -> None:
+    with pytest.raises(InputError, match=rf"^sensor\.{key}: found no such key"):
+        read(tmp_path, text, **{key: None})
+
+
+@pytest.mark.parametrize(
+    ("time", "channels", "words"),
+    [
+        ([0.0], {}, r"track\.channels: found \{\}"),
+        ([0.0], {"speed": [0.0]}, r"track\.speed: found an unknown channel"),
+        ([0.0], {"x_m": [0.0, 1.0]}, r"track\.x_m: found 2 values, expected 1"),
+        ([0.0], {"x_m": 0.0}, r"track\.x_m: found shape \(\)"),
+        (["a"], {"x_m": [0.0]}, r"track\.time_s: found \['a'\]"),
+        ([np.nan], {"x_m": [0.0]}, r"track\.time_s\[0\]: found nan"),
+        ([0.0, 0.0], {"x_m": [0.0, 1.0]}, r"track\.time_s\[1\]: found 0 s a second time"),
+        ([0.0], {"x_m": [np.inf]}, r"track\.x_m\[0\]: found inf"),
+        ([0.0], {"qw": [1.0]}, r"track\.qx: found no such channel"),
+        ([0.0], {"qw": [1e200], "qx": [0.0], "qy": [0.0], "qz": [0.0]}, r"track\.qw\[0\]: found a quaternion"),
+    ],
+)
+def test_arrays_that_are_no_track_are_refused(time: object, channels: object, words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        Track(time_s=time, channels=channels)  # type: ignore[arg-type]
