@@ -1,0 +1,188 @@
+"""`Effect`: what every cause of a gap has in common."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, ClassVar, Self
+
+from ..check import number, sequence
+from ..errors import InputError, show
+from ..section import known_keys
+from .parameter import Parameter
+
+if TYPE_CHECKING:
+    from ..scenario import Scenario
+
+__all__ = ["Effect"]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Effect(ABC):
+    """A cause of a gap between model and measurement: an edit of a scenario.
+
+    A subclass is a frozen dataclass with slots whose fields are the keys of ``[[effect]]``: floats or tuples of floats,
+    whose defaults are neutral. It states `name`, `parameters` (in the order of the fields, a tuple's entries one by
+    one), `source`, and `act`.
+
+    Attributes
+    ----------
+    name
+        Its name in ``[[effect]]``.
+    parameters
+        Its numbers.
+    source
+        Where its equation comes from.
+
+    Raises
+    ------
+    InputError
+        A number that is refused.
+    """
+
+    name: ClassVar[str]
+    parameters: ClassVar[tuple[Parameter, ...]]
+    source: ClassVar[str]
+
+    def __post_init__(self) -> None:
+        for f in fields(self):
+            object.__setattr__(self, f.name, self._checked(f.name))
+
+    def _checked(self, name: str) -> float | tuple[float, ...]:
+        value = getattr(self, name)
+        mine = [p for p in self.parameters if p.field == name]
+        key = f"{self.name}.{name}"
+        if mine[0].key == name:
+            return number(key, value, least=mine[0].least, above=mine[0].above)
+        expected = f"a list of {len(mine)} numbers"
+        found = sequence(key, value, expected, number)
+        if len(found) != len(mine):
+            raise InputError(key, show(value), expected)
+        return tuple(
+            number(f"{self.name}.{p.key}", entry, least=p.least, above=p.above)
+            for p, entry in zip(mine, found, strict=True)
+        )
+
+    @abstractmethod
+    def act(self, scenario: Scenario) -> Scenario:
+        """Return the scenario with the effect in it; called where the effect is not neutral.
+
+        Parameters
+        ----------
+        scenario
+            What the effect adds to: factors multiply, offsets add.
+        """
+
+    def edit(self, scenario: Scenario) -> Scenario:
+        """Return the scenario with the effect in it, and the same object where the effect is neutral.
+
+        Parameters
+        ----------
+        scenario
+            What the effect adds to.
+
+        Raises
+        ------
+        InputError
+            A scenario that the effect cannot be added to.
+        """
+        return scenario if self.is_neutral() else self.act(scenario)
+
+    def is_neutral(self) -> bool:
+        """Whether the effect changes nothing."""
+        return self.vector() == tuple(p.neutral for p in self.parameters)
+
+    @classmethod
+    def ranges(cls, scenario: Scenario) -> tuple[tuple[float, float], ...]:  # noqa: ARG003
+        """Return the plausible range of each parameter for a scenario.
+
+        Parameters
+        ----------
+        scenario
+            The nominal scenario. Where the effect cannot be at work in it, the range is the neutral value alone.
+        """
+        return tuple((p.low, p.high) for p in cls.parameters)
+
+    @classmethod
+    def starts(cls, scenario: Scenario) -> tuple[tuple[float, ...], ...]:
+        """Return the points from which a fit starts, in the order of `parameters`, none of them neutral.
+
+        Parameters
+        ----------
+        scenario
+            The nominal scenario. Where the effect cannot be at work in it, there are no points.
+        """
+        neutral = tuple(p.neutral for p in cls.parameters)
+        points = []
+        for i, (low, high) in enumerate(cls.ranges(scenario)):
+            # A third of the way to either end, and two thirds as well where there is one end only.
+            ends = [end for end in (low, high) if end != neutral[i]]
+            shares = (1.0 / 3.0,) if len(ends) == 2 else (1.0 / 3.0, 2.0 / 3.0)
+            for end in ends:
+                for share in shares:
+                    value = neutral[i] + share * (end - neutral[i])
+                    points.append((*neutral[:i], value, *neutral[i + 1 :]))
+        return tuple(points)
+
+    @classmethod
+    def from_vector(cls, values: Sequence[float]) -> Self:
+        """Return the effect whose parameters, in their order, have these values.
+
+        Parameters
+        ----------
+        values
+            As many numbers as there are parameters.
+
+        Raises
+        ------
+        InputError
+            Another number of values, or one that is refused.
+        """
+        if len(values) != len(cls.parameters):
+            raise InputError(cls.name, f"{len(values)} values", f"{len(cls.parameters)}")
+        entries: dict[str, float | tuple[float, ...]] = {}
+        for parameter, value in zip(cls.parameters, values, strict=True):
+            if parameter.key == parameter.field:
+                entries[parameter.key] = value
+            else:
+                before = entries.get(parameter.field, ())
+                assert isinstance(before, tuple)
+                entries[parameter.field] = (*before, value)
+        return cls(**entries)
+
+    def vector(self) -> tuple[float, ...]:
+        """Return the values of the parameters, in their order."""
+        values: list[float] = []
+        for f in fields(self):
+            value = getattr(self, f.name)
+            values.extend(value if isinstance(value, tuple) else (value,))
+        return tuple(values)
+
+    @classmethod
+    def from_table(cls, table: Mapping[str, object], section: str = "effect") -> Self:
+        """Return the effect of an ``[[effect]]`` table; a key that is left out is neutral.
+
+        Parameters
+        ----------
+        table
+            ``name`` and the effect's keys.
+        section
+            The table's place, for errors.
+
+        Raises
+        ------
+        InputError
+            An unknown key, or a value that is refused.
+        """
+        names = [f.name for f in fields(cls)]
+        known_keys(section, table, ["name", *names], ["name"])
+        try:
+            return cls(**{key: entry for key, entry in table.items() if key in names})
+        except InputError as error:
+            key = (error.key or "").removeprefix(f"{cls.name}.")
+            raise InputError(f"{section}.{key}", error.found, error.expected) from None
+
+    def to_table(self) -> dict[str, object]:
+        """Return the ``[[effect]]`` table that `from_table` reads."""
+        return {"name": self.name, **{f.name: getattr(self, f.name) for f in fields(self)}}

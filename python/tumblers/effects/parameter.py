@@ -1,0 +1,42 @@
+"""`Parameter`: one number of an effect."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = ["Parameter"]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Parameter:
+    """One number of an effect.
+
+    Attributes
+    ----------
+    key
+        Where it stands in ``[[effect]]``: ``factor``, or ``gradient_T_per_m[1]`` for an entry of a list.
+    neutral
+        The value that changes nothing.
+    low, high
+        Plausible range, which a fit searches.
+    unit
+        Its unit, ``1`` for a pure number.
+    meaning
+        What it is, in a few words.
+    least, above
+        Bounds beyond which a value is refused, where there are any.
+    """
+
+    key: str
+    neutral: float
+    low: float
+    high: float
+    unit: str
+    meaning: str
+    least: float | None = None
+    above: float | None = None
+
+    @property
+    def field(self) -> str:
+        """Name of the effect's field that holds the number."""
+        return self.key.partition("[")[0]

@@ -1,0 +1,107 @@
+"""`SurfaceRoughness`: the substrate is not flat."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import zip_longest
+from typing import TYPE_CHECKING, ClassVar
+
+from ..check import Vector
+from ..errors import InputError, show
+from ..relief import Relief
+from .base import Effect
+from .parameter import Parameter
+
+if TYPE_CHECKING:
+    from ..scenario import Scenario
+
+__all__ = ["SurfaceRoughness"]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SurfaceRoughness(Effect):
+    """The substrate is not flat: its height along y is a sum of three waves that are long beside the robot.
+
+    h(y) = Σ_k c_k (cos(2π k y/λ) - 1) + s_k sin(2π k y/λ), k = 1, 2, 3
+
+    The robot touches the tangent plane at its place. A nominal relief of the same wavelength gets the amplitudes added,
+    one of another wavelength is refused. Not modelled: heights that vary along x, bumps shorter than the robot or on
+    which it stands on two points, and roughness that only changes friction (see `friction_coefficient`).
+
+    Attributes
+    ----------
+    wavelength_m
+        λ, m: 6e-4 to 8e-3 plausible, without effect where all amplitudes are 0.
+    cosine_m, sine_m
+        c_k and s_k, m: 0 is neutral, -2e-5 to 2e-5 plausible (paper and milled metal).
+    """
+
+    name: ClassVar[str] = "surface_roughness"
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter(
+            key="wavelength_m",
+            neutral=0.002,
+            low=0.0006,
+            high=0.008,
+            unit="m",
+            meaning="longest wave of the heights",
+            above=0.0,
+        ),
+        Parameter(
+            key="cosine_m[0]", neutral=0.0, low=-2e-05, high=2e-05, unit="m", meaning="cosine amplitude of wave 1"
+        ),
+        Parameter(
+            key="cosine_m[1]", neutral=0.0, low=-2e-05, high=2e-05, unit="m", meaning="cosine amplitude of wave 2"
+        ),
+        Parameter(
+            key="cosine_m[2]", neutral=0.0, low=-2e-05, high=2e-05, unit="m", meaning="cosine amplitude of wave 3"
+        ),
+        Parameter(key="sine_m[0]", neutral=0.0, low=-2e-05, high=2e-05, unit="m", meaning="sine amplitude of wave 1"),
+        Parameter(key="sine_m[1]", neutral=0.0, low=-2e-05, high=2e-05, unit="m", meaning="sine amplitude of wave 2"),
+        Parameter(key="sine_m[2]", neutral=0.0, low=-2e-05, high=2e-05, unit="m", meaning="sine amplitude of wave 3"),
+    )
+    source: ClassVar[str] = "Fourier series of a height profile; the roughness of paper is some 10 µm over 1 mm"
+    wavelength_m: float = 2.0e-3
+    cosine_m: Vector = (0.0, 0.0, 0.0)
+    sine_m: Vector = (0.0, 0.0, 0.0)
+
+    def is_neutral(self) -> bool:
+        """Whether all amplitudes are zero, whatever the wavelength is."""
+        return not any((*self.cosine_m, *self.sine_m))
+
+    @classmethod
+    def starts(cls, scenario: Scenario) -> tuple[tuple[float, ...], ...]:  # noqa: ARG003
+        """Return three wavelengths, each with a small first wave that begins upwards, and one that begins downwards.
+
+        Parameters
+        ----------
+        scenario
+            The nominal scenario.
+        """
+        return tuple(
+            (wavelength, 0.0, 0.0, 0.0, amplitude, 0.0, 0.0)
+            for wavelength in (1e-3, 2e-3, 4e-3)
+            for amplitude in (5e-6, -5e-6)
+        )
+
+    def act(self, scenario: Scenario) -> Scenario:
+        """Return the scenario with its substrate's heights added.
+
+        Parameters
+        ----------
+        scenario
+            What the effect adds to.
+        """
+        relief = scenario.relief
+        if not any((*relief.cosine_m, *relief.sine_m)):
+            relief = Relief(wavelength_m=self.wavelength_m, cosine_m=self.cosine_m, sine_m=self.sine_m)
+            return replace(scenario, relief=relief)
+        if relief.wavelength_m != self.wavelength_m:
+            expected = f"{relief.wavelength_m:g}, that of the relief that is there already"
+            raise InputError(f"{self.name}.wavelength_m", show(self.wavelength_m), expected)
+        relief = replace(relief, cosine_m=_sum(relief.cosine_m, self.cosine_m), sine_m=_sum(relief.sine_m, self.sine_m))
+        return replace(scenario, relief=relief)
+
+
+def _sum(first: tuple[float, ...], second: tuple[float, ...]) -> tuple[float, ...]:
+    return tuple(a + b for a, b in zip_longest(first, second, fillvalue=0.0))
