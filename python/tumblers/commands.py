@@ -12,7 +12,9 @@ import typer
 import typer.main
 from typer.exceptions import TyperException
 
+from .blind.commands import blind_app
 from .check import choice
+from .diagnose_command import diagnose
 from .errors import InputError, SimulationError, TumblersError
 from .field import field_to_table
 from .grid import PAPER_DRAFTS_DEG, PAPER_MAGNETIZATION_DEG
@@ -62,7 +64,12 @@ def _tumblers(
       tumblers presets spiked > spiked.toml
       tumblers simulate spiked.toml --out run.nc --plot run.png
       tumblers sweep --robot spiked --out sweep.nc --plot sweep.png
+      tumblers diagnose examples/aluminium_30deg --out diagnosis
     """
+
+
+app.command()(diagnose)
+app.add_typer(blind_app, name="blind")
 
 
 @app.command()

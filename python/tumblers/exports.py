@@ -1,5 +1,7 @@
 """The package's public names, imported the first time one of them is asked for."""
 
+from . import blind, dataset, effects
+from .diagnosis.result import Diagnosis
 from .errors import InputError, SimulationError, TumblersError
 from .field import Field, RotatingField, StaticField, TableField
 from .grid import PAPER_DRAFTS_DEG, PAPER_MAGNETIZATION_DEG
@@ -25,6 +27,7 @@ __all__ = [
     "SUBSTRATES",
     "Cuboid",
     "Curved",
+    "Diagnosis",
     "Ellipsoid",
     "Field",
     "Hull",
@@ -44,7 +47,10 @@ __all__ = [
     "TableField",
     "TumblersError",
     "__version__",
+    "blind",
+    "dataset",
     "drive",
+    "effects",
     "faster_cases",
     "ideal_speed",
     "preferred_cases",

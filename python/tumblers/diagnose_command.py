@@ -1,0 +1,113 @@
+"""The command ``tumblers diagnose``."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from .errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from .diagnosis.result import Diagnosis
+
+__all__ = ["diagnose"]
+
+
+def diagnose(
+    dataset: Annotated[Path, typer.Argument(metavar="DATASET", help="Folder with dataset.toml, tumblers-dataset/1.")],
+    out: Annotated[
+        Path, typer.Option("--out", help="Folder for diagnosis.json, effects.toml, report.html; made if missing.")
+    ],
+    effects: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME,..|FILE.py",
+            help="Effects to try, files of your own among them; the whole catalogue without it.",
+        ),
+    ] = None,
+    jobs: Annotated[int | None, typer.Option(help="Threads; all by default. The result does not depend on it.")] = None,
+    seed: Annotated[int, typer.Option(help="What the starts and the bootstrap are drawn from.")] = 0,
+) -> None:
+    """Say where model and measurement part, which effect causes it, and how far adding it closes the gap.
+
+    \b
+    Examples:
+      tumblers diagnose examples/aluminium_30deg --out diagnosis
+      tumblers diagnose lab/spring --effects friction_coefficient,stray_field_gradient,coil_yaw.py --out diagnosis
+    """  # noqa: D301 - \b keeps the lines of an example apart
+    _check_folder(out)
+    if jobs is not None and jobs < 1:
+        raise InputError("--jobs", str(jobs), "a whole number of at least 1")
+    if seed < 0:
+        raise InputError("--seed", str(seed), "a whole number of at least 0")
+    from .dataset import load
+
+    measured = load(dataset)
+    names = None if effects is None else _effect_names(effects)
+    from .diagnosis.diagnose import diagnose as run
+    from .diagnosis.words import summary
+
+    start = perf_counter()
+    with _bar() as on_phase:
+        diagnosis = run(measured, effects=names, jobs=jobs, seed=seed, progress=on_phase)
+    _save(diagnosis, out)
+    typer.echo(summary(diagnosis))
+    typer.echo(f"\nreport: {out / 'report.html'}\ntime: {perf_counter() - start:.1f} s")
+
+
+def _check_folder(out: Path) -> None:
+    """Refuse a folder that could not be written to in the end, before anything is computed."""
+    if out.exists() and not out.is_dir():
+        raise InputError("--out", f"the file '{out}'", "a folder")
+    if not out.exists() and not out.parent.is_dir():
+        raise InputError("--out", f"'{out}'", f"a folder in one that exists, '{out.parent}' does not")
+    written = out if out.exists() else out.parent
+    if not os.access(written, os.W_OK | os.X_OK):
+        raise InputError("--out", f"'{out}'", f"a folder that can be written to, '{written}' cannot")
+
+
+def _effect_names(text: str) -> list[str]:
+    from .effects.catalogue import get, load_file
+
+    names: list[str] = []
+    for word in (word.strip() for word in text.split(",")):
+        if word.endswith(".py"):
+            names += [effect.name for effect in load_file(word)]
+        else:
+            names.append(get(word, "--effects").name)
+    return list(dict.fromkeys(names))
+
+
+def _save(diagnosis: Diagnosis, out: Path) -> None:
+    made = not out.exists()
+    try:
+        diagnosis.save(out)
+    except BaseException:
+        if made:
+            with suppress(OSError):
+                out.rmdir()
+        raise
+
+
+@contextmanager
+def _bar() -> Iterator[Callable[[str, int, int], None] | bool]:
+    """Give a bar on standard error that bears the phase's name, where that is a terminal."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield False
+        return
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=console, transient=True) as bar:
+        task = bar.add_task("starting", total=None)
+        yield lambda phase, done, total: bar.update(task, description=phase, completed=done, total=total)

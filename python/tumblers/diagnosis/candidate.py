@@ -1,0 +1,201 @@
+"""`Candidate`: a trial that a lab could make, within the ranges of those that it made where they show any."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, fields, replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from ..dataset import Dataset
+from ..field import Field, RotatingField, StaticField, field_to_table
+from ..scenario import Scenario
+
+__all__ = ["Candidate", "candidates"]
+
+# Degrees by which a slope may exceed the steepest that was used.
+_STEEPER = (5.0, 10.0)
+_STEEPEST_DEG = 80.0
+_FINEST_DEG = 2.5
+# One frequency alone shows no range: then it is multiplied by these, up to what coils commonly do.
+_FASTER = (3.0, 10.0)
+_FASTEST_HZ = 10.0
+# Cycles that a trial lasts at least, and its least and greatest time, s.
+_CYCLES = 2.0
+_LEAST_S, _MOST_S = 1.0, 4.0
+_MOST_FREQUENCIES, _MOST_INCLINES, _MOST_STRENGTHS, _MOST_STATIC = 5, 10, 3, 8
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Candidate:
+    """Conditions of a trial.
+
+    Attributes
+    ----------
+    field
+        Rotating or static.
+    incline_deg
+        Slope along +y, degrees.
+    duration_s
+        Time, s.
+    faster
+        Whether the field rotates faster than in any trial so far.
+    """
+
+    field: RotatingField | StaticField
+    incline_deg: float
+    duration_s: float
+    faster: bool = False
+
+    @property
+    def kind(self) -> str:
+        """What sort of test it is; two of one kind would show much the same."""
+        if isinstance(self.field, StaticField):
+            return "static tilt"
+        place = "slope" if self.incline_deg != 0.0 else f"run {self.field.rotation_axis}"
+        return f"fast {place}" if self.faster else place
+
+    def steeper_and_flatter(self, others: Iterable[Candidate]) -> tuple[Candidate, ...]:
+        """Return this trial on slopes between its own and the next ones, to half a degree.
+
+        Parameters
+        ----------
+        others
+            Trials among whose slopes the next ones are looked for.
+        """
+        slopes = {other.incline_deg for other in others}
+        low = max((s for s in slopes if s < self.incline_deg), default=self.incline_deg)
+        high = min((s for s in slopes if s > self.incline_deg), default=self.incline_deg)
+        between = [end + share * (self.incline_deg - end) for end in (low, high) for share in (0.25, 0.5, 0.75)]
+        found = sorted({round(2.0 * slope) / 2.0 for slope in between} - slopes)
+        return tuple(replace(self, incline_deg=slope) for slope in found)
+
+    def edit(self, scenario: Scenario) -> Scenario:
+        """Return a scenario under these conditions, its step no longer than the field allows.
+
+        Parameters
+        ----------
+        scenario
+            Of any trial of the same robot.
+        """
+        step = scenario.run.step_s
+        if isinstance(self.field, RotatingField):
+            step = min(step, 0.01 / self.field.frequency_Hz)
+        run = replace(
+            scenario.run,
+            duration_s=self.duration_s,
+            step_s=min(step, self.duration_s),
+            incline_deg=self.incline_deg,
+            output_every_s=None,
+        )
+        return replace(scenario, field=self.field, run=run)
+
+    def table(self) -> dict[str, Any]:
+        """Return the keys of a dataset's ``[[trial]]``; a field's keys at their defaults are left out."""
+        defaults = {f.name: f.default for f in fields(self.field)}
+        field = {
+            key: list(value) if isinstance(value, tuple) else value
+            for key, value in field_to_table(self.field).items()
+            if key not in defaults or value != defaults[key]
+        }
+        return {"incline_deg": self.incline_deg, "duration_s": self.duration_s, "field": field}
+
+    def words(self) -> str:
+        """Return the conditions in words."""
+        strength = f"{1e3 * self.field.strength_T:.3g} mT"
+        if isinstance(self.field, StaticField):
+            return f"in a static field of {strength} along ({', '.join(f'{v:.2g}' for v in self.field.direction)})"
+        way = "" if self.field.rotation_axis == (-1.0, 0.0, 0.0) else " the other way round"
+        slope = f"up a slope of {self.incline_deg:.3g}°" if self.incline_deg else "on the level"
+        return f"{slope}, {strength} at {self.field.frequency_Hz:.3g} Hz{way}" + (
+            " (faster than in any trial so far)" if self.faster else ""
+        )
+
+
+def candidates(dataset: Dataset, most: int) -> tuple[Candidate, ...]:
+    """Return trials within the ranges of a lab: a grid, thinned evenly to a greatest number.
+
+    Parameters
+    ----------
+    dataset
+        What the lab did.
+    most
+        So many at most.
+    """
+    rotating = [t.field for t in dataset.trials if isinstance(t.field, RotatingField)]
+    static = [t.field for t in dataset.trials if isinstance(t.field, StaticField)]
+    longest = min(_MOST_S, max(t.duration_s for t in dataset.trials))
+    runs: list[Candidate] = []
+    tilts: list[Candidate] = []
+    if rotating:
+        axes = {(f.rotation_axis, f.initial_direction): f for f in rotating}
+        fastest = max(f.frequency_Hz for f in rotating)
+        inclines = _inclines(t.incline_deg for t in dataset.trials)
+        used = sorted({f.strength_T for f in rotating})
+        # Coils that give one strength also give half of it.
+        strengths = _some(used if len(used) > 1 else [_rounded(0.5 * used[0]), *used], _MOST_STRENGTHS)
+        for frequency in _frequencies(rotating):
+            for strength in strengths:
+                for axis in axes.values():
+                    field: Field = replace(axis, frequency_Hz=frequency, strength_T=strength)
+                    time = round(min(longest, max(_LEAST_S, _CYCLES / frequency)), 3)
+                    faster = frequency > fastest
+                    runs += [
+                        Candidate(field=field, incline_deg=slope, duration_s=time, faster=faster) for slope in inclines
+                    ]
+    still = round(min(longest, _LEAST_S), 3)
+    for direction in dict.fromkeys(f.direction for f in static) or {(0.0, 0.0, 1.0): None}:
+        used = sorted({f.strength_T for f in static if f.direction == direction})
+        if used:
+            between = [0.5 * (a + b) for a, b in pairwise(used)]
+            levels = _some(sorted([*used, *between]), _MOST_STATIC)
+        else:
+            least = min((f.strength_T for f in rotating), default=0.0)
+            levels = [float(share * least) for share in np.linspace(0.1, 1.0, _MOST_STATIC)]
+        tilts += [
+            Candidate(
+                field=StaticField(strength_T=_rounded(level), direction=direction), incline_deg=0.0, duration_s=still
+            )
+            for level in levels
+            if level > 0.0
+        ]
+    return tuple([*_some(runs, max(1, most - len(tilts))), *tilts][:most])
+
+
+def _frequencies(fields: list[RotatingField]) -> list[float]:
+    used = sorted({f.frequency_Hz for f in fields})
+    if len(used) == 1:
+        return [used[0], *(_rounded(used[0] * more) for more in _FASTER if used[0] * more <= _FASTEST_HZ)]
+    between = [(a * b) ** 0.5 for a, b in pairwise(used)]
+    return _some(sorted([*used, *(_rounded(f) for f in between)]), _MOST_FREQUENCIES)
+
+
+def _inclines(values: Iterable[float]) -> list[float]:
+    """Return the level, the slopes that were used, a little more than the steepest, and slopes between steep ones.
+
+    Robots that roll on the level alike part where they begin to slide.
+    """
+    found = sorted({0.0, *values})
+    steep = 0.5 * found[-1]
+    if found[-1] > 0.0:
+        found += [found[-1] + more for more in _STEEPER if found[-1] + more <= _STEEPEST_DEG]
+    found = _some(found, _MOST_INCLINES)
+    while len(found) < _MOST_INCLINES:
+        gap, low = max(((b - a, a) for a, b in pairwise(found) if a >= steep), default=(0.0, 0.0))
+        if gap < _FINEST_DEG:
+            break
+        found = sorted([*found, low + 0.5 * gap])
+    return [round(v, 1) for v in found]
+
+
+def _some(values: list[Any], most: int) -> list[Any]:
+    """Values spread evenly over a list, with its ends."""
+    if len(values) <= most:
+        return values
+    return [values[int(k)] for k in np.unique(np.linspace(0, len(values) - 1, most).round())]
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.3g}")

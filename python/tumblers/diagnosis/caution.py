@@ -1,0 +1,75 @@
+"""What a reader of a diagnosis should not overlook."""
+
+from __future__ import annotations
+
+from math import isfinite
+
+from .phrase import meaning_of, title_of
+from .plausible import neutral_values, plausible_ranges
+from .quantity import percent
+from .result import Diagnosis
+
+__all__ = ["cautions"]
+
+_FEW_TRIALS = 3
+_UNSURE = 0.8
+# Share of the range within which an estimate counts as being at its end.
+_AT_END = 0.01
+_MANY_LOST = 0.5
+
+
+def cautions(diagnosis: Diagnosis) -> tuple[str, ...]:
+    """Return sentences on what weakens a diagnosis, none where nothing does.
+
+    Parameters
+    ----------
+    diagnosis
+        What `diagnose` returned.
+    """
+    return (*_of_effects(diagnosis), *_of_trials(diagnosis))
+
+
+def _of_effects(diagnosis: Diagnosis) -> list[str]:
+    said = []
+    for effect in diagnosis.effects:
+        if effect.probability < _UNSURE:
+            said.append(
+                f"{title_of(effect.name)} has a probability of {percent(effect.probability)} only: see the ranking."
+            )
+        ranges, neutral = plausible_ranges(diagnosis, effect.name), neutral_values(effect.name)
+        for key, interval in effect.parameters.items():
+            low, high = ranges.get(key, (-float("inf"), float("inf")))
+            margin = _AT_END * (high - low)
+            if isfinite(margin) and not low + margin <= interval.estimate <= high - margin:
+                # A range can end at the neutral value, where nothing is wrong with it.
+                if interval.low <= neutral[key] <= interval.high:
+                    continue
+                said.append(
+                    f"{meaning_of(effect.name, key)} is at the end of its plausible range: the true cause may be "
+                    "another one that looks similar."
+                )
+        if effect.name == "camera_calibration":
+            said.append("a camera that is off is a gap of the measurement: calibrate it before any physics is added.")
+    if diagnosis.verdict == "unexplained" and diagnosis.effects:
+        said.append("the partial cause may be wrong altogether: it only follows the data better than the others.")
+    return said
+
+
+def _of_trials(diagnosis: Diagnosis) -> list[str]:
+    said = []
+    trials = diagnosis.dataset.trials
+    if len(trials) < _FEW_TRIALS:
+        count = "one trial" if len(trials) == 1 else f"{len(trials)} trials"
+        said.append(f"{count} can hardly show that an effect carries over to others.")
+    if all(trial.track is None for trial in trials):
+        said.append("there are no tracks: outcomes alone leave many effects possible.")
+    lost = [f.trial for f in diagnosis.floors if f.frames > 0 and f.lost > _MANY_LOST * f.frames]
+    if lost:
+        said.append(f"more than half of the frames are lost in {', '.join(lost)}.")
+    empty = [f.trial for f in diagnosis.floors if f.compared == 0]
+    if empty:
+        said.append(f"nothing could be compared in {', '.join(empty)}.")
+    rough = [f.trial for f in diagnosis.floors if f.numerical_sigmas > 1.0]
+    if rough:
+        said.append(f"the simulation's own error is above the noise in {', '.join(rough)}, and counted as noise there.")
+    return said

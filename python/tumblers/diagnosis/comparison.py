@@ -1,0 +1,239 @@
+"""`Comparison`: model against measurement, in units of the noise, with the sensor's nuisances fitted.
+
+For given paths the nuisances minimise
+
+```text
+Σ |W (y - m(τ, o, ψ, s)) - D η|² + Σ (τ/σ_τ)² + |o/σ_o|² + (ψ/σ_ψ)² + (s/σ_s)² + |η|²
+```
+
+within the sensor's tolerances, by Gauss and Newton's method: the clock and the origin of each trial for itself, the
+camera's heading and scale and the nominal numbers' being off (η, in their tolerances; D in `Floor.tolerance`) over all
+trials that count. What remains depends on the hypothesis alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import radians
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..dataset import Dataset
+from .floor import TOLERANCES, Floor, measure_floors
+from .observed import observe
+from .pose import Path
+from .reading import Reader
+from .simulator import Simulator
+
+__all__ = ["Comparison", "Residual"]
+
+Floats = NDArray[np.float64]
+
+_ITERATIONS = 3
+# Shares of a clock's tolerance that are tried first, and what a frame counts at most then, in sigmas.
+_CLOCKS = np.linspace(-0.9, 0.9, 7)
+_OUTLIER = 6.0
+# A nominal number is not off by more than so many tolerances.
+_MOST_OFF = 3.0
+# What a trial counts that the model cannot run at all, in sigmas.
+_NOT_RUN = 30.0
+# A tolerance is two standard deviations; a clock's offset is uniform within it.
+_ORIGIN_SIGMA, _CAMERA_SIGMA, _CLOCK_SIGMA = 0.5, 0.5, 3.0**-0.5
+
+
+@dataclass(frozen=True, eq=False)
+class Residual:
+    """How wrong a model is.
+
+    Attributes
+    ----------
+    trials
+        By trial, the whitened differences, shape (n_i,): channel after channel, then the outcomes.
+    prior
+        Scaled nuisances of the trials and of the camera: what their being off costs.
+    local
+        Clock (s) and origin (m) by trial, shape (trials, 3).
+    camera
+        Heading (rad) and scale, shape (2,).
+    tolerance
+        How far each nominal number is off, in its tolerance, shape (`TOLERANCES`,).
+    """
+
+    trials: tuple[Floats, ...]
+    prior: Floats
+    local: Floats
+    camera: Floats
+    tolerance: Floats
+
+    def over(self, chosen: Sequence[int]) -> Floats:
+        """Return the whitened differences of some trials, one after another."""
+        return np.concatenate([self.trials[i] for i in chosen]) if len(chosen) else np.empty(0)
+
+
+class Comparison:
+    """A dataset, ready to be compared with paths.
+
+    Parameters
+    ----------
+    dataset
+        What the lab measured.
+    simulator
+        Of the same dataset; its steps are chosen here.
+
+    Attributes
+    ----------
+    readers, floors, nominal_paths
+        By trial.
+    local_sigmas
+        Standard deviations of each trial's clock (s) and origin (m), shape (trials, 3).
+    shared_sigmas
+        Of the camera's heading (rad) and scale, and of the nominal numbers' tolerances (1), shape (2 + `TOLERANCES`,).
+    """
+
+    def __init__(self, dataset: Dataset, simulator: Simulator) -> None:
+        self.dataset = dataset
+        self.simulator = simulator
+        self.readers = tuple(
+            Reader.of(observed, simulator.nominal(i), dataset.trials[i].duration_s)
+            for i, observed in enumerate(observe(dataset))
+        )
+        self.nominal_paths, self.floors = measure_floors(simulator, self.readers)
+        self._bounds, self.local_sigmas = self._tolerances()
+        sensor = dataset.sensor
+        camera = np.array([radians(sensor.heading_tolerance_deg), sensor.scale_tolerance])
+        self._shared_bounds = np.concatenate([camera, np.full(len(TOLERANCES), _MOST_OFF)])
+        self.shared_sigmas = np.concatenate([np.maximum(_CAMERA_SIGMA * camera, 1e-12), np.ones(len(TOLERANCES))])
+
+    def _tolerances(self) -> tuple[Floats, Floats]:
+        sensor = self.dataset.sensor
+        bounds = np.empty((len(self.readers), 3))
+        for i, reader in enumerate(self.readers):
+            clock = 0.5 * reader.observed.frame_interval_s if sensor.time_offset_s is None else sensor.time_offset_s
+            bounds[i] = clock, sensor.origin_tolerance_m, sensor.origin_tolerance_m
+        sigmas = bounds * np.array([_CLOCK_SIGMA, _ORIGIN_SIGMA, _ORIGIN_SIGMA])
+        return bounds, np.maximum(sigmas, 1e-12)
+
+    @property
+    def count(self) -> int:
+        """Number of numbers that were measured."""
+        return sum(self.sizes)
+
+    @property
+    def sizes(self) -> tuple[int, ...]:
+        """Number of numbers that were measured in each trial."""
+        return tuple(
+            sum(int(kept.sum()) for kept in floor.valid.values()) + len(floor.outcome_scale) for floor in self.floors
+        )
+
+    def labels(self, trial: int) -> list[tuple[str, Floats]]:
+        """Return the channels (and outcomes) of a trial's differences and the times of each, s, in their order.
+
+        Parameters
+        ----------
+        trial
+            Its place in the dataset.
+        """
+        floor, reader = self.floors[trial], self.readers[trial]
+        labels = [(name, reader.observed.time_s[kept]) for name, kept in floor.valid.items()]
+        return labels + [(name, np.full(1, reader.duration_s)) for name in floor.outcome_scale]
+
+    def residual(
+        self, paths: Sequence[Path | None], train: Sequence[int] | None = None, fit_nuisances: bool = True
+    ) -> Residual:
+        """Return how wrong a model is.
+
+        Parameters
+        ----------
+        paths
+            The model's, one for each trial.
+        train
+            Trials from which the camera's heading and scale are fitted; all if None.
+        fit_nuisances
+            False to take the sensor as perfect.
+        """
+        count = len(self.readers)
+        local, shared = np.zeros((count, 3)), np.zeros(2 + len(TOLERANCES))
+        train = range(count) if train is None else train
+        if fit_nuisances:
+            local[:, 0] = [self._clock(i, path) for i, path in enumerate(paths)]
+            for _ in range(_ITERATIONS):
+                local, shared = self._improved(paths, local, shared, set(train))
+        trials = tuple(self._whitened(i, path, local[i], shared) for i, path in enumerate(paths))
+        prior = np.concatenate([(local / self.local_sigmas).ravel(), shared / self.shared_sigmas])
+        return Residual(trials, prior, local, shared[:2], shared[2:])
+
+    def raw(self, trial: int, path: Path, local: Floats, camera: Floats) -> dict[str, Floats]:
+        """Return `measured - model` of a trial by channel, m or rad, NaN where lost, for given nuisances."""
+        return self.readers[trial].differences(path, local, camera)
+
+    def _whitened(self, trial: int, path: Path | None, local: Floats, shared: Floats) -> Floats:
+        floor, reader = self.floors[trial], self.readers[trial]
+        if path is None:
+            return np.full(self.sizes[trial], _NOT_RUN)
+        differences = reader.differences(path, local, shared[:2])
+        parts = [floor.whiten[name] @ differences[name][kept] for name, kept in floor.valid.items()]
+        parts.append(self._outcomes(trial, path, shared[:2]))
+        return np.concatenate(parts) - floor.tolerance @ shared[2:]
+
+    def _outcomes(self, trial: int, path: Path, camera: Floats) -> Floats:
+        terms = self.readers[trial].outcome_terms(path, camera)
+        return np.array([terms[name] * scale for name, scale in self.floors[trial].outcome_scale.items()])
+
+    def _clock(self, trial: int, path: Path | None) -> float:
+        """The best of some offsets of a trial's clock: a body that snaps over makes several minima."""
+        floor, reader, bound = self.floors[trial], self.readers[trial], self._bounds[trial, 0]
+        if path is None or not len(reader.observed.time_s) or bound == 0.0:
+            return 0.0
+        best = (np.inf, 0.0)
+        for offset in bound * _CLOCKS:
+            differences = reader.differences(path, np.array([offset, 0.0, 0.0]), np.zeros(2))
+            loss = (offset / self.local_sigmas[trial, 0]) ** 2
+            for name, kept in floor.valid.items():
+                values = floor.whiten[name] @ differences[name][kept]
+                if name in ("x", "y") and len(values):
+                    # What a shift of the origin cannot explain.
+                    shift = floor.whiten[name].sum(axis=1)
+                    weight = (self.local_sigmas[trial, 1]) ** -2
+                    values = values - shift * ((shift @ values) / (shift @ shift + weight))
+                loss += float(np.sum(np.minimum(values**2, _OUTLIER**2)))
+            best = min(best, (loss, float(offset)))
+        return best[1]
+
+    def _improved(
+        self, paths: Sequence[Path | None], local: Floats, shared: Floats, train: set[int]
+    ) -> tuple[Floats, Floats]:
+        shared_weight = 1.0 / self.shared_sigmas**2
+        normal, right = np.diag(shared_weight), -shared_weight * shared
+        blocks: dict[int, tuple[Floats, Floats, Floats]] = {}
+        for i, path in enumerate(paths):
+            floor, reader = self.floors[i], self.readers[i]
+            if path is None:
+                continue
+            table = np.empty((0, 6))
+            if len(reader.observed.time_s):
+                here = reader.differences(path, local[i], shared[:2])
+                columns = reader.nuisance_columns(path, local[i], shared[:2])
+                rows = [
+                    floor.whiten[name] @ np.column_stack([columns[name][kept], here[name][kept]])
+                    for name, kept in floor.valid.items()
+                ]
+                table = np.concatenate(rows)
+            outcomes = self._outcomes(i, path, shared[:2])
+            table = np.vstack([table, np.column_stack([np.zeros((len(outcomes), 5)), outcomes])])
+            a, r = table[:, :3], table[:, 5] - floor.tolerance @ shared[2:]
+            g = np.hstack([table[:, 3:5], -floor.tolerance])
+            weight = 1.0 / self.local_sigmas[i] ** 2
+            inverse = np.linalg.inv(a.T @ a + np.diag(weight))
+            by_shared, own = a.T @ g, a.T @ r + weight * local[i]
+            blocks[i] = inverse, by_shared, own
+            if i in train:
+                normal += g.T @ g - by_shared.T @ inverse @ by_shared
+                right -= g.T @ r - by_shared.T @ inverse @ own
+        change = np.linalg.solve(normal, right)
+        shared = np.clip(shared + change, -self._shared_bounds, self._shared_bounds)
+        local = local.copy()
+        for i, (inverse, by_shared, own) in blocks.items():
+            local[i] = np.clip(local[i] - inverse @ (own + by_shared @ change), -self._bounds[i], self._bounds[i])
+        return local, shared

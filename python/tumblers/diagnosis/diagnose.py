@@ -1,0 +1,294 @@
+"""`diagnose`: where model and measurement part, which effect causes it, and how far the gap shrinks once it is added."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..dataset import Dataset
+from ..effects.base import Effect
+from ..effects.catalogue import CATALOGUE, get
+from ..errors import InputError, show
+from ..version import __version__
+from .attribute import Attribution, Contender, attribute
+from .comparison import Comparison
+from .estimate import intervals, samples
+from .fit import Fitter, robust_cost
+from .floor import TOLERANCES
+from .held_out import HeldOut, folds, held_out, shrink
+from .localise import localise
+from .next_trial import next_trials
+from .overlay import overlays
+from .result import (
+    Diagnosis,
+    EffectEstimate,
+    Interval,
+    NextTrial,
+    RankedHypothesis,
+    TrialFloor,
+)
+from .simulator import Simulator
+from .verdict import judge, ties
+from .wrench import missing_wrench, wrench_regions
+
+__all__ = ["OnPhase", "diagnose"]
+
+Floats = NDArray[np.float64]
+OnPhase = Callable[[str, int, int], None]
+
+# Hypotheses whose gap is measured on trials left out, and how probable they must be (the best is always measured).
+_MEASURED, _PROBABLE = 3, 0.02
+# Rivals that a next trial is sought for, and draws of each.
+_RIVALS, _SAMPLES = 6, 4
+_RULED_OUT = 0.01
+
+
+def diagnose(
+    dataset: Dataset,
+    *,
+    effects: Sequence[str] | None = None,
+    jobs: int | None = None,
+    seed: int = 0,
+    progress: bool | OnPhase = False,
+) -> Diagnosis:
+    """Diagnose the gap between a lab's measurements and its nominal model.
+
+    Parameters
+    ----------
+    dataset
+        What the lab measured and what it believes.
+    effects
+        Names of the effects that are considered; the whole catalogue if None.
+    jobs
+        Threads, all by default. The result does not depend on it.
+    seed
+        Of everything that is drawn: the same for the same seed.
+    progress
+        True for a progress bar with the phase's name, or a callback that is told the phase, how much of it is done, and of
+        how much.
+
+    Returns
+    -------
+    Diagnosis
+        With its parts as attributes.
+
+    Raises
+    ------
+    InputError
+        An effect or a number that is refused, or a dataset in which nothing was measured.
+    SimulationError
+        The native module gave up.
+    """
+    kinds = _kinds(effects)
+    if jobs is not None and (isinstance(jobs, bool) or not isinstance(jobs, int) or jobs < 1):
+        raise InputError("jobs", show(jobs), "a whole number of at least 1")
+    start = perf_counter()
+    with _telling(progress) as tell:
+        tell("simulating the nominal model", 0, 1)
+        simulator = Simulator(dataset, jobs or 0)
+        comparison = Comparison(dataset, simulator)
+        if comparison.count == 0:
+            raise InputError("trial", "no measurement in any trial: every frame is lost", "at least one measurement")
+        attribution = attribute(comparison, kinds, tell, seed)
+        return _Conclusion(comparison, attribution, seed, tell).diagnosis(start)
+
+
+class _Conclusion:
+    def __init__(self, comparison: Comparison, attribution: Attribution, seed: int, tell: OnPhase) -> None:
+        self.comparison, self.attribution, self.seed, self.tell = comparison, attribution, seed, tell
+        self.fitter = Fitter(comparison)
+        self.measured: dict[tuple[str, ...], HeldOut] = {}
+
+    def held_out(self, contender: Contender) -> HeldOut:
+        """What a contender says of trials left out, computed once."""
+        if contender.names not in self.measured:
+            self.measured[contender.names] = held_out(self.fitter, contender)
+        return self.measured[contender.names]
+
+    def diagnosis(self, start: float) -> Diagnosis:
+        comparison, attribution, tell = self.comparison, self.attribution, self.tell
+        dataset = comparison.dataset
+        nominal = self.held_out(attribution.nominal)
+        considered = [
+            c for k, c in enumerate(attribution.contenders[:_MEASURED]) if k == 0 or c.probability > _PROBABLE
+        ]
+        for k, contender in enumerate(considered):
+            tell("trials left out", k, len(considered))
+            self.held_out(contender)
+        best = attribution.contenders[0]
+        gap = shrink(self.fitter, nominal, self.held_out(best), self.seed)
+        verdict, chosen = judge(comparison, attribution, gap)
+        if chosen is not best:
+            gap = shrink(self.fitter, nominal, nominal, self.seed)
+        tied = ties(comparison, attribution, chosen)
+
+        tell("where the gap lies", 0, 2)
+        still = attribution.nominal.residual
+        regions, maps = localise(comparison, still, comparison.nominal_paths)
+        wrench = None
+        if verdict != "no_gap":
+            tell("the missing wrench", 1, 2)
+            wrench = missing_wrench(comparison, still, comparison.nominal_paths)
+            if wrench is not None:
+                regions = (*regions, *wrench_regions(wrench))
+        else:
+            regions = ()
+        tell("the next trial", 0, 1)
+        return Diagnosis(
+            dataset=dataset,
+            model=comparison.simulator.model,
+            verdict=verdict,
+            effects=self._estimates(chosen, tied),
+            chosen=chosen.effects,
+            ranking=tuple(self._ranked(contender) for contender in attribution.contenders),
+            gap=gap,
+            where=tuple(sorted(regions, key=lambda region: -region.share_of_gap)),
+            next_trials=self._next(chosen, tied),
+            ruled_out=self._ruled_out(chosen, tied),
+            heat_maps=maps,
+            missing_wrench=wrench,
+            overlays=overlays(self.fitter, nominal, self.held_out(chosen), chosen),
+            floors=self._floors(),
+            assumptions=_assumptions(comparison, attribution),
+            seed=self.seed,
+            seconds=perf_counter() - start,
+            version=__version__,
+        )
+
+    def _estimates(self, chosen: Contender, tied: dict[str, tuple[str, ...]]) -> tuple[EffectEstimate, ...]:
+        found = intervals(self.fitter, self.attribution, chosen)
+        made = []
+        for name in chosen.names:
+            mine: dict[str, Interval] = {key: interval for (effect, key), interval in found.items() if effect == name}
+            share = sum(c.probability for c in self.attribution.contenders if name in c.names)
+            made.append(EffectEstimate(name, min(share, 1.0), mine, tied.get(name, ())))
+        # The likelier cause first.
+        return tuple(sorted(made, key=lambda effect: -effect.probability))
+
+    def _ranked(self, contender: Contender) -> RankedHypothesis:
+        comparison = self.comparison
+        left_out, shrunk = None, None
+        if contender.names in self.measured:
+            gap = shrink(self.fitter, self.measured[()], self.measured[contender.names], self.seed)
+            left_out, shrunk = gap.after, gap.shrink.estimate
+        values = contender.residual.over(self.fitter.trials)
+        return RankedHypothesis(
+            effects=contender.names,
+            probability=contender.probability,
+            log_evidence=contender.log_evidence - self.attribution.nominal.log_evidence,
+            gap=float(np.sqrt(robust_cost(values) / comparison.count)),
+            held_out_gap=left_out,
+            shrink=shrunk,
+        )
+
+    def _next(self, chosen: Contender, tied: dict[str, tuple[str, ...]]) -> tuple[NextTrial, ...]:
+        if not any(tied.values()):
+            return ()
+        rivals = [chosen]
+        for contender in self.attribution.contenders:
+            for name, others in tied.items():
+                swapped = {*chosen.names} - {name}
+                rival = any(set(contender.names) == swapped | {other} for other in others)
+                if rival and contender not in rivals and contender.probability > _PROBABLE:
+                    rivals.append(contender)
+        hypotheses = [(c.names, samples(self.attribution, c, _SAMPLES, self.seed)) for c in rivals[:_RIVALS]]
+        weights = [contender.probability for contender in rivals[:_RIVALS]]
+        return next_trials(self.comparison.dataset, self.comparison.simulator, hypotheses, self.seed, weights)
+
+    def _ruled_out(self, chosen: Contender, tied: dict[str, tuple[str, ...]]) -> dict[str, str]:
+        """For each improbable single effect the trial that speaks most against it."""
+        out = {}
+        named = {*chosen.names, *(other for others in tied.values() for other in others)}
+        for contender in self.attribution.contenders:
+            if len(contender.names) != 1 or contender.names[0] in named or contender.probability > _RULED_OUT:
+                continue
+            against = [
+                robust_cost(theirs) - robust_cost(ours)
+                for theirs, ours in zip(contender.residual.trials, chosen.residual.trials, strict=True)
+            ]
+            worst = int(np.argmax(against))
+            if against[worst] > 0.0:
+                out[contender.names[0]] = self.comparison.dataset.trials[worst].id
+        return out
+
+    def _floors(self) -> tuple[TrialFloor, ...]:
+        comparison = self.comparison
+        return tuple(
+            TrialFloor(
+                trial=reader.observed.id,
+                step_s=comparison.simulator.step_s[i],
+                numerical_sigmas=floor.numerical_sigmas,
+                tolerance_sigmas=floor.tolerance_sigmas,
+                frames=reader.observed.frames,
+                lost=reader.observed.lost,
+                compared=comparison.sizes[i],
+            )
+            for i, (reader, floor) in enumerate(zip(comparison.readers, comparison.floors, strict=True))
+        )
+
+
+def _kinds(effects: Sequence[str] | None) -> list[type[Effect]]:
+    if effects is None:
+        return list(CATALOGUE.values())
+    if isinstance(effects, str) or not effects:
+        raise InputError("effects", show(effects), "a list of names of effects")
+    return [get(name) for name in dict.fromkeys(effects)]
+
+
+def _assumptions(comparison: Comparison, attribution: Attribution) -> tuple[str, ...]:
+    simulator, sensor = comparison.simulator, comparison.dataset.sensor
+    clock = "half a frame" if sensor.time_offset_s is None else f"{1e3 * sensor.time_offset_s:g} ms"
+    nominal = ", ".join(f"{name} {100.0 * share:g} %" for name, share in TOLERANCES.items())
+    stated = (
+        "as the dataset states"
+        if "magnetic_torque" in comparison.dataset.model_given
+        else "which the dataset leaves open"
+    )
+    said = [
+        f"The magnetic torque is taken by the scheme '{simulator.model.magnetic_torque}', {stated}.",
+        "The robot starts at rest on the substrate, long axis along +y, when the field starts.",
+        f"The sensor's nuisances are fitted in every hypothesis: clock within {clock}, origin within "
+        f"{1e6 * sensor.origin_tolerance_m:g} µm, heading within {sensor.heading_tolerance_deg:g}°, scale within "
+        f"{100.0 * sensor.scale_tolerance:g} %. Larger ones are the effect camera_calibration.",
+        f"The nominal numbers may be off by these standard deviations: {nominal}.",
+        "What halving the step changes is part of the noise.",
+        f"Every {attribution.dispersion:.3g} measured numbers count as one in probabilities and intervals.",
+        "Before anything is fitted, 40 % for no gap, 45 % for one effect, 15 % for two; no more than two are tried.",
+        "Evidence is Laplace's approximation; intervals are 90 % profiles.",
+    ]
+    tracks = [trial.track for trial in comparison.dataset.trials if trial.track is not None]
+    if any(
+        reader.observed.frames - reader.observed.lost > len(reader.observed.time_s) for reader in comparison.readers
+    ):
+        said.append("Of long tracks, frames at even distances are compared; the others add next to nothing.")
+    if any(np.isnan(column).any() for track in tracks for column in track.channels.values()):
+        said.append(
+            "Lost frames, and frames after the robot has left the view, are not compared: it is not at rest then."
+        )
+    if not folds(Fitter(comparison)):
+        said.append(
+            "With a single trial no trial can be left out: the gap is that of the fit itself, and proves nothing."
+        )
+    return tuple(said)
+
+
+@contextmanager
+def _telling(progress: bool | OnPhase) -> Iterator[OnPhase]:
+    if callable(progress):
+        yield progress
+        return
+    if not progress:
+        yield lambda _phase, _done, _total: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+    console = Console(stderr=True)
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+        task = bar.add_task("", total=1)
+        yield lambda phase, done, total: bar.update(task, description=phase, completed=done, total=total)

@@ -1,0 +1,235 @@
+"""`Fitter`: the parameters of a hypothesis by least squares, from several starts.
+
+The objective is
+
+```text
+Σ ρ(r_i) + Σ (nuisance/σ)² + Σ (u/0.5)²,      ρ Huber's, quadratic to 4 sigmas
+```
+
+over the whitened differences r of the trials that are fitted, the sensor's nuisances at their optimum for every point. The
+derivatives are finite differences, all of them one native batch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+
+from .comparison import Comparison, Residual
+from .hypothesis import PRIOR_SIGMA, Hypothesis
+from .simulator import Job
+
+__all__ = ["HUBER", "Fit", "Fitter", "robust_cost"]
+
+Floats = NDArray[np.float64]
+
+# Where the loss turns from square to linear, in sigmas.
+HUBER = 4.0
+# A derivative's step changes the differences by about this much (root mean square), within these bounds.
+_CHANGE, _LEAST_STEP, _MOST_STEP = 0.3, 1e-3, 5e-2
+# A guess that is nearer to a start than this, as a share of the way, is no other start.
+_NEAR = 0.15
+# A guess is simulated where it promises so much of the cost; the first effects' parameters move no farther than this.
+_PROMISE, _FARTHEST = 4.0, 0.3
+
+
+def robust_cost(values: Floats) -> float:
+    """Return Σ ρ, with ρ = r² up to `HUBER` and 2 HUBER |r| - HUBER² beyond."""
+    size = np.abs(values)
+    return float(np.sum(np.where(size <= HUBER, size**2, 2.0 * HUBER * size - HUBER**2)))
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A hypothesis at its best.
+
+    Attributes
+    ----------
+    hypothesis
+        What was fitted.
+    point
+        The parameters as u, shape (p,).
+    residual
+        How wrong it still is, over all trials.
+    cost
+        The objective there.
+    jacobian
+        Derivatives of the fitted differences by u, shape (n, p), Huber's weights in them.
+    """
+
+    hypothesis: Hypothesis
+    point: Floats
+    residual: Residual
+    cost: float
+    jacobian: Floats
+
+
+class Fitter:
+    """Fits hypotheses to a dataset.
+
+    Parameters
+    ----------
+    comparison
+        The dataset, ready to be compared.
+    """
+
+    def __init__(self, comparison: Comparison) -> None:
+        self.comparison = comparison
+        self.trials = tuple(range(len(comparison.readers)))
+
+    def residuals(
+        self, hypothesis: Hypothesis, points: Sequence[Floats], train: Sequence[int] | None = None
+    ) -> list[Residual]:
+        """Return how wrong a hypothesis is at each of some points: one native batch.
+
+        Parameters
+        ----------
+        hypothesis, points
+            What is simulated.
+        train
+            Trials that are simulated and from which the camera is fitted; all if None. The others count as not run.
+        """
+        chosen = self.trials if train is None else tuple(train)
+        jobs = []
+        for point in points:
+            effects = hypothesis.effects(point)
+            jobs += [Job(i, effects) for i in chosen]
+        paths = self.comparison.simulator.run(jobs)
+        out = []
+        for k in range(len(points)):
+            row = [None for _ in self.trials]
+            for i, path in zip(chosen, paths[k * len(chosen) : (k + 1) * len(chosen)], strict=True):
+                row[i] = path  # type: ignore[call-overload]
+            out.append(self.comparison.residual(row, chosen))
+        return out
+
+    def cost(self, residual: Residual, point: Floats, train: Sequence[int] | None = None) -> float:
+        """Return the objective."""
+        chosen = self.trials if train is None else train
+        prior = float(np.sum(residual.prior**2) + np.sum((point / PRIOR_SIGMA) ** 2))
+        return robust_cost(residual.over(chosen)) + prior
+
+    def scan(
+        self, hypotheses: Sequence[Hypothesis], base: Sequence[Floats], still: Residual, slopes: Floats | None = None
+    ) -> list[list[Floats]]:
+        """Return the points from which each hypothesis is best fitted, the best first.
+
+        Every start is simulated; then, as if the differences were linear, the best point on the way to each start and
+        the best combination of all of them, where that promises something.
+
+        Parameters
+        ----------
+        hypotheses
+            What will be fitted.
+        base
+            For each the point to which its starts are added: zero, or the fit of its first effects.
+        still
+            How wrong each is at its base: the same for all.
+        slopes
+            Derivatives of the differences by the first effects' parameters at the base, shape (n, q).
+        """
+        starts = [[np.clip(b + s, h.low, h.high) for s in h.starts] for h, b in zip(hypotheses, base, strict=True)]
+        found = self._batch(hypotheses, starts)
+        here = still.over(self.trials)
+        first = np.empty((len(here), 0)) if slopes is None else slopes
+        tried: list[list[tuple[float, int, Floats]]] = []
+        guesses: list[list[Floats]] = []
+        for h, b, points, residuals in zip(hypotheses, base, starts, found, strict=True):
+            tried.append([(self.cost(still, b), 0, b)])
+            tried[-1] += [(self.cost(r, p), 1 + n, p) for n, (r, p) in enumerate(zip(residuals, points, strict=True))]
+            changes = [r.over(self.trials) - here for r in residuals]
+            columns = [[k] for k in range(len(points))]
+            if len(points) > 1 and len(b) - first.shape[1] > 1:
+                columns.append(list(range(len(points))))
+            mine = []
+            for chosen in columns:
+                table = np.column_stack([first, *(changes[k] for k in chosen)])
+                gram = table.T @ table
+                shares = np.linalg.solve(gram + (1e-6 * np.trace(gram) + 1e-12) * np.eye(len(gram)), -table.T @ here)
+                step = np.concatenate([shares[: first.shape[1]], np.zeros(len(b) - first.shape[1])])
+                step = np.clip(step, -_FARTHEST, _FARTHEST)
+                for share, k in zip(shares[first.shape[1] :], chosen, strict=True):
+                    step = step + np.clip(share, -_FARTHEST, 3.0) * (points[k] - b)
+                near = len(chosen) == 1 and not first.shape[1] and abs(shares[0] - 1.0) < _NEAR
+                if here @ here - np.sum((here + table @ shares) ** 2) > _PROMISE and not near:
+                    mine.append(np.clip(b + step, h.low, h.high))
+            guesses.append(mine)
+        for those, points, residuals in zip(tried, guesses, self._batch(hypotheses, guesses), strict=True):
+            count = len(those)
+            those += [(self.cost(r, p), count + n, p) for n, (r, p) in enumerate(zip(residuals, points, strict=True))]
+        return [[point for _, _, point in sorted(those, key=lambda entry: entry[:2])] for those in tried]
+
+    def _batch(self, hypotheses: Sequence[Hypothesis], points: Sequence[Sequence[Floats]]) -> list[list[Residual]]:
+        jobs = []
+        for h, mine in zip(hypotheses, points, strict=True):
+            for point in mine:
+                effects = h.effects(point)
+                jobs += [Job(i, effects) for i in self.trials]
+        paths = iter(self.comparison.simulator.run(jobs))
+        return [[self.comparison.residual([next(paths) for _ in self.trials]) for _ in mine] for mine in points]
+
+    def fit(
+        self, hypothesis: Hypothesis, start: Floats, train: Sequence[int] | None = None, evaluations: int = 8
+    ) -> Fit:
+        """Return the best point near a start.
+
+        Parameters
+        ----------
+        hypothesis
+            What is fitted.
+        start
+            A point u, shape (p,).
+        train
+            Trials that are fitted; all if None.
+        evaluations
+            At most so many trial points.
+        """
+        chosen = self.trials if train is None else tuple(train)
+        steps = np.full(len(start), 1e-2)
+        known: dict[bytes, Residual] = {}
+
+        def at(point: Floats) -> Residual:
+            key = point.tobytes()
+            if key not in known:
+                known[key] = self.residuals(hypothesis, [point], chosen)[0]
+            return known[key]
+
+        def rows(residual: Residual, point: Floats) -> Floats:
+            return np.concatenate([residual.over(chosen), residual.prior, point / PRIOR_SIGMA])
+
+        def jacobian(point: Floats) -> Floats:
+            here = rows(at(point), point)
+            # Towards the inside of the range.
+            signed = np.where(point + steps > hypothesis.high, -steps, steps)
+            moved = [point + signed[j] * np.eye(len(point))[j] for j in range(len(point))]
+            there = self.residuals(hypothesis, moved, chosen)
+            columns = [(rows(r, p) - here) / h for r, p, h in zip(there, moved, signed, strict=True)]
+            slope = np.array([np.sqrt(np.mean(column[: -len(point)] ** 2)) for column in columns])
+            steps[:] = np.clip(_CHANGE / np.maximum(slope, 1e-12), _LEAST_STEP, _MOST_STEP)
+            return np.column_stack(columns)
+
+        inside = np.clip(start, hypothesis.low, hypothesis.high)
+        fixed = hypothesis.high <= hypothesis.low
+        low, high = np.where(fixed, -1e-9, hypothesis.low), np.where(fixed, 1e-9, hypothesis.high)
+        margin = 1e-9 * (high - low)
+        result = least_squares(
+            lambda point: rows(at(point), point),
+            np.clip(inside, low + margin, high - margin),
+            jac=jacobian,
+            bounds=(low, high),
+            loss="huber",
+            f_scale=HUBER,
+            max_nfev=evaluations,
+            ftol=1e-3,
+            xtol=1e-4,
+            gtol=1e-3,
+        )
+        residual = at(result.x)
+        own = len(residual.over(chosen))
+        weights = np.minimum(1.0, HUBER / np.maximum(np.abs(residual.over(chosen)), 1e-12)) ** 0.5
+        slopes = jacobian(result.x)[:own] * weights[:, None]
+        return Fit(hypothesis, result.x, residual, self.cost(residual, result.x, chosen), slopes)

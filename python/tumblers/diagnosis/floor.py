@@ -1,0 +1,235 @@
+"""The noise floor: what sensor noise, the model's own numerical error and the nominal numbers' tolerance leave open.
+
+The differences of one channel of one trial, at times t, count as drawn from
+
+```text
+Σ = σ² 1 + α² d dᵀ + α² diag(d̂²) + (d̄²/T) min(t_i, t_j) + Σ_p diag(d̂_p²)
+```
+
+σ is the sensor's noise, d the change of the path when the step is halved, d̂ its greatest size at this frame and the next
+ones (when the body snaps over, a little too early or late is a large difference for a frame), d̄ its root mean square (a path
+that has been knocked off its course stays off it: a random walk), T the trial's time, and d_p the change with each nominal number moved by
+its tolerance. Multiplied by the inverse of the Cholesky factor of Σ, differences are plain numbers of unit variance; where
+the walk dominates they are the displacements from frame to frame, so that a stride, not a place, is compared. What the
+tolerances change alike in all trials is left to the fit: `d_p`, whitened, are the columns of nuisances with unit variance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter1d
+
+from ..effects.size_error import SizeError
+from ..field import RotatingField, StaticField, TableField
+from ..scenario import Scenario
+from .pose import Path
+from .reading import Reader
+from .simulator import STEPS_S, Edit, Job, Simulator
+
+__all__ = ["TOLERANCES", "Floor", "measure_floors"]
+
+Floats = NDArray[np.float64]
+_NO_LOCAL, _NO_CAMERA = np.zeros(3), np.zeros(2)
+
+# One standard deviation of what a lab's nominal numbers may be off by, as shares.
+TOLERANCES = {
+    "mass": 0.005,
+    "magnetization": 0.005,
+    "field strength": 0.005,
+    "friction coefficient": 0.005,
+    "adhesion": 0.01,
+    "electrostatic force": 0.01,
+    "length": 0.001,
+    "height": 0.001,
+}
+# The step is halved until this moves the path by less, in noise sigmas.
+_GOOD_ENOUGH = 0.7
+# The error of a scheme of first order is twice what halving the step shows.
+_ALPHA = 2.0
+
+
+@dataclass(frozen=True, eq=False)
+class Floor:
+    """The noise of one trial.
+
+    Attributes
+    ----------
+    whiten
+        By channel, the inverse Cholesky factor of Σ over the frames that were not lost, shape (k, k).
+    valid
+        By channel, which frames were not lost, shape (n,).
+    outcome_scale
+        By kind of outcome, what its scaled difference is multiplied by, at most 1.
+    tolerance
+        Whitened change of the differences with each nominal number moved by its tolerance, channels then outcomes, shape
+        (k, `TOLERANCES`).
+    numerical_sigmas
+        Root mean square change of the path when the step is halved, in noise sigmas.
+    tolerance_sigmas
+        The same for the nominal numbers' tolerances together.
+    """
+
+    whiten: dict[str, Floats]
+    valid: dict[str, NDArray[np.bool_]]
+    outcome_scale: dict[str, float]
+    tolerance: Floats
+    numerical_sigmas: float
+    tolerance_sigmas: float
+
+
+def _scaled_moment(scenario: Scenario) -> Scenario:
+    robot = scenario.robot
+    share = 1.0 + TOLERANCES["magnetization"]
+    return replace(scenario, robot=replace(robot, magnetization_A_per_m=robot.magnetization_A_per_m * share))
+
+
+def _scaled_mass(scenario: Scenario) -> Scenario:
+    robot = scenario.robot
+    # The magnetic moment keeps its own tolerance, and follows the volume, not the mass.
+    return replace(scenario, robot=replace(robot, mass_kg=robot.total_mass_kg * (1.0 + TOLERANCES["mass"])))
+
+
+def _scaled_field(scenario: Scenario) -> Scenario:
+    field, share = scenario.field, 1.0 + TOLERANCES["field strength"]
+    if isinstance(field, TableField):
+        rows = tuple((x * share, y * share, z * share) for x, y, z in field.field_T)
+        return replace(scenario, field=replace(field, field_T=rows))
+    assert isinstance(field, RotatingField | StaticField)
+    return replace(scenario, field=replace(field, strength_T=field.strength_T * share))
+
+
+def _scaled_substrate(key: str, name: str) -> Edit:
+    def edit(scenario: Scenario) -> Scenario:
+        value = getattr(scenario.substrate, key) * (1.0 + TOLERANCES[name])
+        return replace(scenario, substrate=replace(scenario.substrate, **{key: value}))
+
+    return edit
+
+
+def _scaled_size(which: str) -> Edit:
+    def edit(scenario: Scenario) -> Scenario:
+        return SizeError(**{f"{which}_factor": 1.0 + TOLERANCES[which]}).edit(scenario)
+
+    return edit
+
+
+_EDITS: tuple[Edit, ...] = (
+    _scaled_mass,
+    _scaled_moment,
+    _scaled_field,
+    _scaled_substrate("friction_coefficient", "friction coefficient"),
+    _scaled_substrate("adhesion_N_per_m2", "adhesion"),
+    _scaled_substrate("electrostatic_force_N", "electrostatic force"),
+    _scaled_size("length"),
+    _scaled_size("height"),
+)
+
+
+def measure_floors(simulator: Simulator, readers: tuple[Reader, ...]) -> tuple[list[Path | None], tuple[Floor, ...]]:
+    """Choose each trial's step, and measure its noise.
+
+    Parameters
+    ----------
+    simulator
+        Whose steps are halved where halving them shows.
+    readers
+        Of the dataset's trials.
+
+    Returns
+    -------
+    tuple
+        The nominal paths, None where the model cannot be run, and the floors.
+    """
+    trials = range(len(readers))
+    paths = simulator.run([Job(i) for i in trials] + [Job(i, divisor=2) for i in trials])
+    nominal, halved = paths[: len(readers)], paths[len(readers) :]
+    for _ in STEPS_S[1:]:
+        coarse = [i for i in trials if _distance(readers[i], nominal[i], halved[i]) > _GOOD_ENOUGH]
+        finer = simulator.run([Job(i, divisor=4) for i in coarse])
+        for i, path in zip(coarse, finer, strict=True):
+            simulator.step_s[i] *= 0.5
+            nominal[i], halved[i] = halved[i], path
+    moved = simulator.run([Job(i, edit=edit) for i in trials for edit in _EDITS])
+    count = len(_EDITS)
+    floors = tuple(_floor(readers[i], nominal[i], halved[i], moved[count * i : count * (i + 1)]) for i in trials)
+    return nominal, floors
+
+
+def _change(reader: Reader, path: Path | None, other: Path | None) -> dict[str, Floats]:
+    if path is None or other is None:
+        return {}
+    before = reader.differences(path, _NO_LOCAL, _NO_CAMERA)
+    after = reader.differences(other, _NO_LOCAL, _NO_CAMERA)
+    return {name: np.nan_to_num(before[name] - after[name]) for name in before}
+
+
+def _outcome_change(reader: Reader, path: Path | None, other: Path | None) -> dict[str, float]:
+    if path is None or other is None:
+        return {}
+    before, after = reader.outcome_terms(path, _NO_CAMERA), reader.outcome_terms(other, _NO_CAMERA)
+    return {name: before[name] - after[name] for name in before}
+
+
+def _rms(reader: Reader, change: Mapping[str, Floats]) -> float:
+    scaled = [values / reader.observed.noise[name] for name, values in change.items()]
+    return float(np.sqrt(np.mean(np.concatenate(scaled) ** 2))) if scaled else 0.0
+
+
+def _distance(reader: Reader, path: Path | None, other: Path | None) -> float:
+    terms = _outcome_change(reader, path, other).values()
+    return max([_rms(reader, _change(reader, path, other)), *(abs(term) for term in terms)])
+
+
+def _floor(reader: Reader, path: Path | None, halved: Path | None, moved: list[Path | None]) -> Floor:
+    observed = reader.observed
+    numerical = _change(reader, path, halved)
+    tolerances = [_change(reader, path, other) for other in moved]
+    time = np.maximum(observed.time_s, 0.0)
+    whiten, valid = {}, {}
+    lost = np.zeros(len(time), dtype=bool)
+    for name in observed.channels:
+        source = observed.values.get(name)
+        gone = lost if source is None else ~np.isfinite(source)
+        if source is None and observed.orientation is not None:
+            gone = ~np.isfinite(observed.orientation).all(axis=1)
+        kept = ~gone
+        t = time[kept]
+        covariance = np.eye(len(t)) * observed.noise[name] ** 2
+        if name in numerical:
+            d = numerical[name][kept]
+            covariance += _ALPHA**2 * (np.outer(d, d) + np.diag(maximum_filter1d(np.abs(d), 3) ** 2))
+            walk = float(np.mean(d**2)) if len(d) else 0.0
+            covariance += walk / reader.duration_s * np.minimum.outer(t, t)
+        for change in tolerances:
+            if name in change and len(t):
+                covariance += np.diag(maximum_filter1d(np.abs(change[name][kept]), 3) ** 2)
+        factor = np.linalg.cholesky(covariance) if len(t) else covariance
+        whiten[name] = np.linalg.inv(factor) if len(t) else covariance
+        valid[name] = kept
+    numerical_terms = _outcome_change(reader, path, halved)
+    tolerance_terms = [_outcome_change(reader, path, other) for other in moved]
+    scale = {}
+    for term in reader.outcome_kinds:
+        spread = (_ALPHA * numerical_terms.get(term, 0.0)) ** 2
+        # A change beyond the noise is a threshold that was crossed: no nuisance is linear there.
+        spread += sum(max(change.get(term, 0.0) ** 2 - 1.0, 0.0) for change in tolerance_terms)
+        scale[term] = float(1.0 / np.sqrt(1.0 + spread))
+    columns = [
+        np.concatenate(
+            [whiten[name] @ change.get(name, np.zeros(len(time)))[valid[name]] for name in whiten]
+            + [np.array([terms.get(term, 0.0) * scale[term] for term in scale])]
+        )
+        for change, terms in zip(tolerances, tolerance_terms, strict=True)
+    ]
+    return Floor(
+        whiten=whiten,
+        valid=valid,
+        outcome_scale=scale,
+        tolerance=np.column_stack(columns),
+        numerical_sigmas=_rms(reader, numerical),
+        tolerance_sigmas=float(np.sqrt(sum(_rms(reader, change) ** 2 for change in tolerances))),
+    )

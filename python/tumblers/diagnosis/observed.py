@@ -1,0 +1,111 @@
+"""`Observed`: what was measured in one trial, as numbers with their noise."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import radians
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..dataset import Dataset, LabTrial, Outcome
+
+__all__ = ["CHANNELS", "Observed", "observe"]
+
+Floats = NDArray[np.float64]
+
+# The names that a diagnosis uses for what is compared along a track.
+CHANNELS = ("x", "y", "z", "tilt", "heading", "twist")
+# More frames than these add little, and their covariance costs the cube of their number.
+_MOST_FRAMES = 160
+# A heading is not defined where the long axis stands upright.
+_LEAST_COSINE = 0.2
+
+
+@dataclass(frozen=True, eq=False)
+class Observed:
+    """One trial's measurements.
+
+    Attributes
+    ----------
+    id
+        The trial's.
+    time_s
+        Times of the frames that are compared, s, shape (n,); none for a trial without a track.
+    values
+        By channel, shape (n,), NaN where lost: ``x``, ``y``, ``z`` in m, ``tilt`` and ``heading`` in rad.
+    orientation
+        Unit quaternions, shape (n, 4), where the track has them; they take the place of ``tilt`` and ``heading``.
+    noise
+        One standard deviation by channel, m or rad.
+    frame_interval_s
+        Median time between the track's frames, s; 0 without a track.
+    outcome
+        What was noted beside or instead of the track.
+    frames, lost
+        Number of frames in the file, and of those without any measurement.
+    """
+
+    id: str
+    time_s: Floats
+    values: dict[str, Floats]
+    orientation: Floats | None
+    noise: dict[str, float]
+    frame_interval_s: float
+    outcome: Outcome | None
+    frames: int
+    lost: int
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Names of what is compared, in the order of `CHANNELS`."""
+        turned = () if self.orientation is None else ("tilt", "heading", "twist")
+        return tuple(name for name in CHANNELS if name in self.values or name in turned)
+
+
+def observe(dataset: Dataset) -> tuple[Observed, ...]:
+    """Return what was measured in each trial of a dataset.
+
+    Parameters
+    ----------
+    dataset
+        What the lab measured.
+    """
+    return tuple(_observed(dataset, trial) for trial in dataset.trials)
+
+
+def _observed(dataset: Dataset, trial: LabTrial) -> Observed:
+    sensor, track = dataset.sensor, trial.track
+    empty = np.empty(0)
+    if track is None:
+        return Observed(trial.id, empty, {}, None, {}, 0.0, trial.outcome, 0, 0)
+    found = np.zeros(len(track.time_s), dtype=bool)
+    for column in track.channels.values():
+        found |= np.isfinite(column)
+    kept = np.flatnonzero(found)
+    if len(kept) > _MOST_FRAMES:
+        kept = kept[np.unique(np.linspace(0, len(kept) - 1, _MOST_FRAMES).round().astype(int))]
+    columns = {name: np.asarray(column, dtype=np.float64)[kept] for name, column in track.channels.items()}
+    angle = radians(sensor.angle_noise_deg)
+    height = sensor.position_noise_m if sensor.z_noise_m is None else sensor.z_noise_m
+    noise = {"x": sensor.position_noise_m, "y": sensor.position_noise_m, "z": height}
+    noise |= {"tilt": angle, "heading": angle, "twist": angle}
+    values = {name[0]: columns[name] for name in ("x_m", "y_m", "z_m") if name in columns}
+    orientation = None
+    if "qw" in columns:
+        orientation = np.stack([columns[name] for name in ("qw", "qx", "qy", "qz")], axis=1)
+    else:
+        for name in ("tilt", "heading"):
+            if f"{name}_deg" in columns:
+                values[name] = np.radians(columns[f"{name}_deg"])
+    return Observed(
+        id=trial.id,
+        time_s=np.asarray(track.time_s, dtype=np.float64)[kept],
+        values=values,
+        orientation=orientation,
+        noise=noise,
+        frame_interval_s=track.frame_interval_s,
+        outcome=trial.outcome,
+        frames=len(track.time_s),
+        lost=int(len(found) - found.sum()),
+    )

@@ -1,0 +1,96 @@
+"""Poses between the rows of a rollout, and what a camera reads from them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Path", "body_axis", "heading_of", "relative_turn", "tilt_of"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """The seen poses of one run at even times.
+
+    Attributes
+    ----------
+    interval_s
+        Time between rows, s.
+    position_m
+        The tracked point, substrate frame as the camera sees it, m, shape (n, 3).
+    orientation
+        Unit quaternions w, x, y, z, body to substrate, shape (n, 4), of one sign along the path.
+    contact_mode
+        0 airborne, 1 point, 2 line, 3 surface, shape (n,).
+    """
+
+    interval_s: float
+    position_m: Floats
+    orientation: Floats
+    contact_mode: NDArray[np.int8]
+
+    def at(self, time_s: Floats) -> tuple[Floats, Floats]:
+        """Return positions (k, 3) and unit quaternions (k, 4) at times (k,), the ends held.
+
+        Parameters
+        ----------
+        time_s
+            Times, s.
+        """
+        place = np.clip(time_s / self.interval_s, 0.0, len(self.position_m) - 1.000001)
+        row = place.astype(np.intp)
+        share = (place - row)[:, None]
+        position = self.position_m[row] * (1.0 - share) + self.position_m[row + 1] * share
+        turned = self.orientation[row] * (1.0 - share) + self.orientation[row + 1] * share
+        return position, turned / np.linalg.norm(turned, axis=1, keepdims=True)
+
+    def mode_at(self, time_s: Floats) -> NDArray[np.int8]:
+        """Return the contact mode at times (k,), s."""
+        row = np.clip(np.rint(time_s / self.interval_s), 0, len(self.contact_mode) - 1).astype(np.intp)
+        return self.contact_mode[row]
+
+
+def body_axis(orientation: Floats) -> Floats:
+    """Return the body's +y axis in the substrate frame, shape (n, 3), of quaternions (n, 4)."""
+    w, x, y, z = orientation.T
+    return np.stack([2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)], axis=1)
+
+
+def tilt_of(axis: Floats) -> Floats:
+    """Return the angle of the long axis above the substrate, rad, shape (n,), of axes (n, 3)."""
+    return np.arcsin(np.clip(axis[:, 2], -1.0, 1.0))
+
+
+def heading_of(axis: Floats) -> Floats:
+    """Return the angle of the long axis's projection from +y towards -x, rad, shape (n,), of axes (n, 3)."""
+    return np.arctan2(-axis[:, 0], axis[:, 1])
+
+
+def relative_turn(model: Floats, measured: Floats) -> Floats:
+    """Return the rotation from model to measurement as a vector in the body frame, rad, shape (n, 3).
+
+    Parameters
+    ----------
+    model, measured
+        Unit quaternions w, x, y, z, shape (n, 4).
+    """
+    w1, x1, y1, z1 = model.T
+    w2, x2, y2, z2 = measured.T
+    w = w1 * w2 + x1 * x2 + y1 * y2 + z1 * z2
+    v = np.stack(
+        [
+            w1 * x2 - x1 * w2 - y1 * z2 + z1 * y2,
+            w1 * y2 - y1 * w2 - z1 * x2 + x1 * z2,
+            w1 * z2 - z1 * w2 - x1 * y2 + y1 * x2,
+        ],
+        axis=1,
+    )
+    v = np.where((w < 0.0)[:, None], -v, v)
+    sine = np.linalg.norm(v, axis=1)
+    angle = 2.0 * np.arctan2(sine, np.abs(w))
+    scale = np.where(sine > 1e-12, angle / np.maximum(sine, 1e-12), 2.0)
+    return np.asarray(v * scale[:, None], dtype=np.float64)

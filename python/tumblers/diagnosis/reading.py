@@ -1,0 +1,213 @@
+"""What a model says that a trial's sensor should have read, and by how much it is wrong.
+
+With the camera's nuisances (clock τ, origin o, heading ψ, scale s, all small) the seen place is
+
+```text
+(x, y) = (1 + s) R(ψ) (x, y)(t + τ) + o
+```
+
+Angles are compared as `measured - model`; of a quaternion, the rotation vector from model to measurement in the body
+frame: about x it is a tilt, about z a heading, about y a twist.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cos, log, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..field import RotatingField
+from ..scenario import Scenario
+from .observed import Observed
+from .pose import Path, body_axis, heading_of, relative_turn, tilt_of
+
+__all__ = ["GLOBAL", "LOCAL", "Reader", "climbed"]
+
+Floats = NDArray[np.float64]
+
+# Nuisances of one trial (clock, origin) and of the camera (heading, scale).
+LOCAL = ("time_offset_s", "origin_x_m", "origin_y_m")
+GLOBAL = ("heading_rad", "scale")
+
+# Share of the way without slip from which a slope counts as climbed, and how blurred that border is.
+_CLIMBED = 0.1
+_BLUR = 0.05
+# A human who writes down the wrong outcome.
+_LAPSE = 0.01
+# The robot has come to rest in this last share of a static trial.
+_REST_SHARE = 0.1
+_TIME_STEP_S = 2e-4
+
+
+@dataclass(frozen=True, eq=False)
+class Reader:
+    """Compares the paths of one trial with what was measured in it.
+
+    Attributes
+    ----------
+    observed
+        The measurements.
+    duration_s
+        Time of the trial, s.
+    level_way_m
+        Way without slip in that time, hull perimeter × cycles, m; 0 where the field does not rotate.
+    """
+
+    observed: Observed
+    duration_s: float
+    level_way_m: float
+
+    @classmethod
+    def of(cls, observed: Observed, scenario: Scenario, duration_s: float) -> Reader:
+        """Return the reader of a trial whose nominal scenario is given."""
+        way = 0.0
+        if isinstance(scenario.field, RotatingField):
+            way = scenario.robot.body().hull_perimeter_m * scenario.field.frequency_Hz * duration_s
+        return cls(observed, duration_s, way)
+
+    def differences(self, path: Path, local: Floats, camera: Floats) -> dict[str, Floats]:
+        """Return `measured - model` by channel, m or rad, shape (n,), NaN where lost.
+
+        Parameters
+        ----------
+        path
+            The model's.
+        local
+            Clock (s) and origin (x, y in m), shape (3,).
+        camera
+            Heading (rad) and scale, shape (2,).
+        """
+        seen = self.observed
+        if not len(seen.time_s):
+            return {}
+        position, orientation = path.at(seen.time_s + local[0])
+        out: dict[str, Floats] = {}
+        c, s, scale = cos(camera[0]), sin(camera[0]), 1.0 + camera[1]
+        x, y = position[:, 0], position[:, 1]
+        model = {
+            "x": scale * (c * x - s * y) + local[1],
+            "y": scale * (s * x + c * y) + local[2],
+            "z": position[:, 2],
+        }
+        for name, predicted in model.items():
+            if name in seen.values:
+                out[name] = seen.values[name] - predicted
+        if seen.orientation is not None:
+            turned = _about_z(orientation, camera[0])
+            error = relative_turn(turned, seen.orientation)
+            out["tilt"], out["twist"], out["heading"] = error[:, 0], error[:, 1], error[:, 2]
+        elif "tilt" in seen.values or "heading" in seen.values:
+            axis = body_axis(orientation)
+            tilt = tilt_of(axis)
+            if "tilt" in seen.values:
+                out["tilt"] = seen.values["tilt"] - tilt
+            if "heading" in seen.values:
+                # The projection of an axis that stands upright points nowhere.
+                wrong = seen.values["heading"] - heading_of(axis) - camera[0]
+                out["heading"] = np.arctan2(np.sin(wrong), np.cos(wrong)) * np.cos(tilt)
+        return out
+
+    @property
+    def outcome_kinds(self) -> tuple[str, ...]:
+        """Names of `outcome_terms`."""
+        outcome = self.observed.outcome
+        if outcome is None:
+            return ()
+        noted = {"mean_speed": outcome.mean_speed_m_per_s, "tilt": outcome.tilt_deg, "climbs": outcome.climbs}
+        return tuple(name for name, value in noted.items() if value is not None)
+
+    def outcome_terms(self, path: Path, camera: Floats) -> dict[str, float]:
+        """Return the scaled differences of the trial's outcome: numbers whose squares count as -2 log likelihood.
+
+        Parameters
+        ----------
+        path
+            The model's.
+        camera
+            Heading (rad) and scale, shape (2,).
+        """
+        outcome = self.observed.outcome
+        terms: dict[str, float] = {}
+        if outcome is None:
+            return terms
+        ends, _ = path.at(np.array([0.0, self.duration_s]))
+        way = float(ends[1, 1] - ends[0, 1])
+        if outcome.mean_speed_m_per_s is not None and outcome.sigma_m_per_s is not None:
+            speed = way * (1.0 + camera[1]) / self.duration_s
+            terms["mean_speed"] = (outcome.mean_speed_m_per_s - speed) / outcome.sigma_m_per_s
+        if outcome.tilt_deg is not None and outcome.sigma_deg is not None:
+            rest = np.linspace((1.0 - _REST_SHARE) * self.duration_s, self.duration_s, 8)
+            tilt = float(np.degrees(np.mean(tilt_of(body_axis(path.at(rest)[1])))))
+            terms["tilt"] = (outcome.tilt_deg - tilt) / outcome.sigma_deg
+        if outcome.climbs is not None:
+            share = way / self.level_way_m if self.level_way_m > 0.0 else float(np.sign(way))
+            terms["climbs"] = climbed(share, outcome.climbs)
+        return terms
+
+    def read_outcomes(self, path: Path) -> dict[str, float]:
+        """Return what the model says of each kind of outcome: the share climbed, m/s, degrees."""
+        ends, _ = path.at(np.array([0.0, self.duration_s]))
+        way = float(ends[1, 1] - ends[0, 1])
+        rest = np.linspace((1.0 - _REST_SHARE) * self.duration_s, self.duration_s, 8)
+        return {
+            "climbed_share": way / self.level_way_m if self.level_way_m > 0.0 else 0.0,
+            "mean_speed_m_per_s": way / self.duration_s,
+            "tilt_deg": float(np.degrees(np.mean(tilt_of(body_axis(path.at(rest)[1]))))),
+        }
+
+    def nuisance_columns(self, path: Path, local: Floats, camera: Floats) -> dict[str, Floats]:
+        """Return the derivatives of the differences by the nuisances, by channel, shape (n, 5): `LOCAL`, then `GLOBAL`."""
+        here = self.differences(path, local, camera)
+        later = self.differences(path, local + np.array([_TIME_STEP_S, 0.0, 0.0]), camera)
+        position, orientation = path.at(self.observed.time_s + local[0])
+        columns: dict[str, Floats] = {}
+        for name, values in here.items():
+            by = np.zeros((len(values), 5))
+            by[:, 0] = (later[name] - values) / _TIME_STEP_S
+            if name == "x":
+                by[:, 1], by[:, 3], by[:, 4] = -1.0, position[:, 1], -position[:, 0]
+            elif name == "y":
+                by[:, 2], by[:, 3], by[:, 4] = -1.0, -position[:, 0], -position[:, 1]
+            elif self.observed.orientation is not None and name in ("tilt", "twist", "heading"):
+                up = _upward(orientation)
+                by[:, 3] = -up[:, {"tilt": 0, "twist": 1, "heading": 2}[name]]
+            elif name == "heading":
+                by[:, 3] = -np.cos(tilt_of(body_axis(orientation)))
+            columns[name] = by
+        return columns
+
+
+def climbed(share: float, climbs: bool) -> float:
+    """Return the scaled difference of a climbing outcome, `±√(-2 log P)`, with a smooth likelihood.
+
+    ```text
+    P(climbs) = ε + (1 - 2ε) / (1 + exp(-(share - 0.1)/0.05))
+    ```
+
+    Parameters
+    ----------
+    share
+        Way over the way without slip.
+    climbs
+        What was seen.
+    """
+    odds = np.clip((share - _CLIMBED) / _BLUR, -60.0, 60.0)
+    chance = _LAPSE + (1.0 - 2.0 * _LAPSE) / (1.0 + float(np.exp(-odds)))
+    chance = chance if climbs else 1.0 - chance
+    # A likely outcome counts as no difference at all.
+    loss = -2.0 * log(chance / (1.0 - _LAPSE))
+    return (1.0 if climbs else -1.0) * float(np.sqrt(max(loss, 0.0)))
+
+
+def _about_z(orientation: Floats, angle: float) -> Floats:
+    c, s = cos(0.5 * angle), sin(0.5 * angle)
+    w, x, y, z = orientation.T
+    return np.stack([c * w - s * z, c * x - s * y, c * y + s * x, c * z + s * w], axis=1)
+
+
+def _upward(orientation: Floats) -> Floats:
+    """The substrate's normal in the body frame, shape (n, 3)."""
+    w, x, y, z = orientation.T
+    return np.stack([2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)], axis=1)

@@ -1,0 +1,206 @@
+"""`Simulator`: a dataset's trials under hypotheses, as batches of native rollouts."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .. import _core
+from ..camera import Camera
+from ..dataset import Dataset
+from ..effects.base import Effect
+from ..errors import TumblersError
+from ..field import RotatingField, TableField
+from ..model import Model
+from ..progress import native_call
+from ..scenario import Scenario
+from .pose import Path
+
+__all__ = ["STEPS_S", "Edit", "Job", "Simulator"]
+
+# Rows of a path: no farther apart than this, and so many in a cycle of the field.
+_LONGEST_INTERVAL_S = 2e-3
+_ROWS_PER_CYCLE = 60
+# Steps that are tried, the first of them first; a cycle of the field has so many at least.
+STEPS_S = (5.0e-4, 2.5e-4)
+_STEPS_PER_CYCLE = 100
+
+# Rollouts that are kept: a fit often comes back to a point.
+_MOST_KEPT = 512
+
+Edit = Callable[[Scenario], Scenario]
+
+
+@dataclass(frozen=True, eq=False)
+class Job:
+    """One trial to simulate.
+
+    Attributes
+    ----------
+    trial
+        Its place in the dataset.
+    effects
+        What is added to the nominal model.
+    divisor
+        By how much the trial's step is divided.
+    edit
+        A change of the scenario beside the effects.
+    """
+
+    trial: int
+    effects: tuple[Effect, ...] = ()
+    divisor: int = 1
+    edit: Edit | None = None
+
+
+class Simulator:
+    """Simulates the trials of a dataset.
+
+    Parameters
+    ----------
+    dataset
+        What the lab believes, and its trials.
+    threads
+        Threads of a batch, all if 0. The results do not depend on it.
+    """
+
+    def __init__(self, dataset: Dataset, threads: int = 0) -> None:
+        self.dataset = dataset
+        self.threads = threads
+        # The lab that does not say how the torque is taken gets the scheme of second order.
+        stated = "magnetic_torque" in dataset.model_given
+        self.model: Model = dataset.model if stated else replace(dataset.model, magnetic_torque="midpoint")
+        self.step_s = [_first_step(trial.field) for trial in dataset.trials]
+        self.rollouts = 0
+        self._nominal: dict[tuple[int, float], Scenario] = {}
+        self._known: OrderedDict[Scenario, tuple[_core._Rollout, int]] = OrderedDict()
+
+    def nominal(self, trial: int, divisor: int = 1) -> Scenario:
+        """Return the scenario of what the lab believes, long enough for a clock that is half a frame off.
+
+        Parameters
+        ----------
+        trial
+            The trial's place in the dataset.
+        divisor
+            By how much the trial's step is divided.
+        """
+        key = (trial, self.step_s[trial] / divisor)
+        if key not in self._nominal:
+            lab = self.dataset.trials[trial]
+            scenario = lab.scenario(self.dataset, key[1], model=self.model)
+            if not isinstance(lab.field, TableField):
+                interval = lab.track.frame_interval_s if lab.track is not None else 0.0
+                longer = lab.duration_s + interval + _LONGEST_INTERVAL_S
+                scenario = replace(scenario, run=replace(scenario.run, duration_s=longer))
+            self._nominal[key] = scenario
+        return self._nominal[key]
+
+    def scenario(self, job: Job) -> Scenario:
+        """Return the scenario of a job with its effects at work, and none left to apply.
+
+        Parameters
+        ----------
+        job
+            The trial and the effects.
+
+        Raises
+        ------
+        InputError
+            An effect that cannot be added to this trial.
+        """
+        scenario = self.nominal(job.trial, job.divisor)
+        if job.edit is not None:
+            scenario = job.edit(scenario)
+        for effect in job.effects:
+            scenario = effect.edit(scenario)
+        return scenario
+
+    def run(self, jobs: Sequence[Job]) -> list[Path | None]:
+        """Return the path of each job as the camera sees it; None where the model cannot be run.
+
+        Parameters
+        ----------
+        jobs
+            What to simulate.
+
+        Raises
+        ------
+        SimulationError
+            The native module gave up.
+        """
+        scenarios = [self._possible(job) for job in jobs]
+        # A camera changes what is seen, not what moves.
+        moving = [None if s is None else replace(s, camera=Camera()) for s in scenarios]
+        new = list(dict.fromkeys(s for s in moving if s is not None and s not in self._known))
+        trials: list[_core.Trial] = []
+        runnable: list[Scenario] = []
+        for scenario in new:
+            with suppress(TumblersError):
+                trials.append(scenario.trial())
+                runnable.append(scenario)
+        every = [_rows_every(scenario) for scenario in runnable]
+        with native_call("rollouts", len(trials), progress=False) as on_progress:
+            results = _core.rollouts(trials, every, self.threads, on_progress)
+        self.rollouts += len(trials)
+        for scenario, result, rows in zip(runnable, results, every, strict=True):
+            self._known[scenario] = result, rows
+        paths = [
+            None if seen is None or moved not in self._known else self._path(seen, *self._known[moved])
+            for seen, moved in zip(scenarios, moving, strict=True)
+        ]
+        while len(self._known) > _MOST_KEPT:
+            self._known.popitem(last=False)
+        return paths
+
+    def _possible(self, job: Job) -> Scenario | None:
+        with suppress(TumblersError):
+            return self.scenario(job)
+        return None
+
+    def _path(self, scenario: Scenario, rollout: _core._Rollout, every: int) -> Path | None:
+        if rollout["error"] is not None:
+            return None
+        # The last row may be off the even times; a robot that left all bounds has fewer.
+        rows = min(scenario.run.steps // every + 1, len(rollout["time_s"]) - 1)
+        if rows < 2:
+            return None
+        position = rollout["position_m"][:rows]
+        orientation = rollout["orientation"][:rows]
+        # One sign along the path, so that neighbours can be averaged.
+        same = np.einsum("ij,ij->i", orientation[1:], orientation[:-1]) >= 0.0
+        sign = np.concatenate([[1.0], np.cumprod(np.where(same, 1.0, -1.0))])
+        orientation = orientation * sign[:, None]
+        offset = scenario.robot.center_of_mass_m
+        if self.dataset.sensor.tracked_point == "body_centre" and any(offset):
+            position = position - _turned(orientation, np.array(offset))
+        return Path(
+            interval_s=every * scenario.run.step_s,
+            position_m=scenario.camera.seen_position(position),
+            orientation=scenario.camera.seen_orientation(orientation),
+            contact_mode=rollout["contact_mode"][:rows],
+        )
+
+
+def _first_step(field: object) -> float:
+    longest = STEPS_S[0]
+    if isinstance(field, RotatingField):
+        longest = min(longest, 1.0 / (_STEPS_PER_CYCLE * field.frequency_Hz))
+    return longest
+
+
+def _rows_every(scenario: Scenario) -> int:
+    longest = _LONGEST_INTERVAL_S
+    if isinstance(scenario.field, RotatingField):
+        longest = min(longest, 1.0 / (_ROWS_PER_CYCLE * scenario.field.frequency_Hz))
+    return max(1, min(int(longest / scenario.run.step_s + 1e-9), scenario.run.steps))
+
+
+def _turned(orientation: np.ndarray, vector: np.ndarray) -> np.ndarray:  # type: ignore[type-arg]
+    w, v = orientation[:, :1], orientation[:, 1:]
+    cross = np.cross(v, vector)
+    return np.asarray(vector + 2.0 * (w * cross + np.cross(v, cross)))

@@ -1,0 +1,310 @@
+"""A diagnosis in plain words."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator, Mapping
+from math import isfinite
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..effects.catalogue import CATALOGUE
+from ..field import RotatingField
+from .caution import cautions
+from .condition import condition_of, condition_of_table
+from .phrase import meaning_of, phrase_of, title_of, unit_of
+from .quantity import handy_unit, percent, rounded, sigmas, with_interval, with_sigma
+from .result import Diagnosis, EffectEstimate, Gap, NextTrial, Region
+
+__all__ = ["headline", "observation_words", "points", "reason_words", "region_words", "set_words", "summary"]
+
+Floats = NDArray[np.float64]
+
+_WIDTH = 100
+_LABEL = 13
+# Share of the trials from which on they are counted rather than listed.
+_SPREAD = 0.5
+_MOST_REGIONS, _MOST_VALUES, _MOST_RULED_OUT = 3, 4, 6
+# A missing force is named from this many standard deviations on.
+_SIGNIFICANT = 3.0
+_WRENCH = (("force", "N", 0), ("torque", "N m", 3))
+_MEASURED = ("time_s", "position_x_m", "position_y_m")
+_END_SHARE = 0.2
+_UNITS = {
+    "time_s": "s",
+    "frequency_Hz": "Hz",
+    "field_strength_T": "T",
+    "incline_deg": "degrees",
+    "position_x_m": "m",
+    "position_y_m": "m",
+    "cycle_phase_deg": "degrees",
+}
+_AXES = {
+    "trial": "trial",
+    "time_s": "time",
+    "frequency_Hz": "frequency",
+    "field_strength_T": "field",
+    "incline_deg": "slope",
+    "position_x_m": "place x",
+    "position_y_m": "place y",
+    "cycle_phase_deg": "phase of the cycle",
+    "contact_mode": "contact",
+    "channel": "channel",
+    "missing_force": "missing force along",
+    "missing_torque": "missing torque about",
+}
+_PLACES = {
+    "airborne": "in the air",
+    "point": "in point contact",
+    "line": "in line contact",
+    "surface": "in surface contact",
+    "not rotating": "in fields that do not rotate",
+}
+_OBSERVATIONS = {
+    "mean_speed_m_per_s": ("mean speed", "m/s"),
+    "drift_m_per_s": ("drift along x", "m/s"),
+    "tilt_deg": ("tilt", "degrees"),
+}
+
+
+def summary(diagnosis: Diagnosis) -> str:
+    """Return a diagnosis in plain words for a terminal: the verdict, where, what, how far, ties, next, cautions.
+
+    Parameters
+    ----------
+    diagnosis
+        What `diagnose` returned.
+    """
+    lines = textwrap.wrap(headline(diagnosis), _WIDTH, break_on_hyphens=False)
+    last = ""
+    for label, text in points(diagnosis):
+        start = f"  {label if label != last else '':{_LABEL}}"
+        last = label
+        lines += textwrap.wrap(
+            text, _WIDTH, initial_indent=start, subsequent_indent=" " * len(start), break_on_hyphens=False
+        )
+    return "\n".join(lines)
+
+
+def headline(diagnosis: Diagnosis) -> str:
+    """Return the verdict in one sentence."""
+    gap = diagnosis.gap
+    floor = f"noise alone gives {_sigmas(gap.noise_floor)}"
+    if diagnosis.verdict == "no_gap":
+        return f"No gap: the nominal model explains the data to within noise ({_sigmas(gap.before)}, {floor})."
+    phrases = [phrase_of(effect, diagnosis.dataset) for effect in diagnosis.effects]
+    if diagnosis.verdict == "explained" and phrases:
+        scope = _scope(diagnosis)
+        causes = _capital(" and ".join(phrase.cause for phrase in phrases)) + scope
+        amounts = " and ".join(phrase.amount.rstrip(",") if len(phrases) > 1 else phrase.amount for phrase in phrases)
+        together = ", together," if len(phrases) > 1 else ""
+        return f"{causes}: {amounts}{together} {'explain' if len(phrases) > 1 else 'explains'} {_explained(gap)}."
+    left = f"the gap is {_sigmas(gap.before)} ({floor})"
+    if not phrases:
+        return f"Unexplained: {left}, and no effect of the catalogue closes it."
+    partial = " and ".join(f"{phrase.cause}, {phrase.amount.rstrip(',')}" for phrase in phrases)
+    return (
+        f"Unexplained: {left}, and no effect of the catalogue closes it. The best partial cause is that {partial}; "
+        f"with it, {_sigmas(gap.after)} are left."
+    )
+
+
+def points(diagnosis: Diagnosis) -> tuple[tuple[str, str], ...]:
+    """Return what follows the verdict: labels and sentences, the most important first.
+
+    Parameters
+    ----------
+    diagnosis
+        What `diagnose` returned.
+    """
+    said: list[tuple[str, str]] = []
+    where = _where(diagnosis)
+    if where:
+        said.append(("where", where))
+    said += [("missing", text) for text in _missing(diagnosis)]
+    said += [("what", _what(effect)) for effect in diagnosis.effects]
+    said.append(("how far", _how_far(diagnosis)))
+    said += [("tied", text) for text in _ties(diagnosis)]
+    said += [("ruled out", text) for text in _ruled_out(diagnosis)]
+    if diagnosis.next_trials:
+        said.append(("next trial", _next(diagnosis.next_trials[0])))
+    said += [("caution", text) for text in cautions(diagnosis)]
+    return tuple(said)
+
+
+def set_words(names: tuple[str, ...]) -> str:
+    """Return a hypothesis's effects in words."""
+    return " + ".join(title_of(name) for name in names) if names else "the nominal model"
+
+
+def region_words(region: Region) -> tuple[str, str]:
+    """Return a region's axis and its extent in words: ``("frequency", "12 to 15 Hz")``."""
+    axis = _AXES.get(region.axis, region.axis.replace("_", " "))
+    if region.value is not None:
+        return axis, region.value
+    low, high = (np.nan if bound is None else bound for bound in (region.low, region.high))
+    unit = _UNITS.get(region.axis, "")
+    factor, written = handy_unit(max(abs(low), abs(high)), unit if region.axis != "time_s" else "")
+    written = "s" if region.axis == "time_s" else written
+    # Ends that were measured rather than set have more digits than they deserve.
+    error = _END_SHARE * factor * (high - low) if region.axis in _MEASURED else None
+    ends = list(dict.fromkeys(rounded(factor * bound, error) for bound in (low, high)))
+    return axis, f"{' to '.join(ends)}{'' if written == '°' else ' '}{written}".rstrip()
+
+
+def reason_words(why: str) -> str:
+    """Return why a trial is proposed, effects by their titles and without the full stop."""
+    for name in sorted(CATALOGUE, key=len, reverse=True):
+        why = why.replace(name, title_of(name))
+    return why.rstrip(".")
+
+
+def observation_words(kind: str, mean: float, sigma: float) -> str:
+    """Return what would be seen of a trial in words: ``mean speed 1.2 ± 0.1 mm/s``."""
+    if kind == "climbs":
+        return f"climbs with {percent(mean)} probability"
+    name, unit = _OBSERVATIONS.get(kind, (kind.replace("_", " "), ""))
+    return f"{name} {with_sigma(mean, sigma, unit)}"
+
+
+def _sigmas(gap: float) -> str:
+    return f"{sigmas(gap)} σ" if isfinite(gap) else "not measured"
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]
+
+
+def _explained(gap: Gap) -> str:
+    if not isfinite(gap.shrink.estimate):
+        return "the gap, though no trial was left to check it on"
+    return f"{percent(gap.shrink.estimate)} of the gap on trials not fitted"
+
+
+def _scope(diagnosis: Diagnosis) -> str:
+    """Return at which of the dataset's frequencies the gap shows, where not at all of them."""
+    regions = [region for region in diagnosis.where if region.axis == "frequency_Hz"]
+    used = sorted({t.field.frequency_Hz for t in diagnosis.dataset.trials if isinstance(t.field, RotatingField)})
+    camera = [effect.name for effect in diagnosis.effects] == ["camera_calibration"]
+    if not regions or len(used) < 2 or camera or regions[0].low is None or regions[0].high is None:
+        return ""
+    low, high = regions[0].low, regions[0].high
+    if low <= used[0] and high >= used[-1]:
+        return ""
+    if high >= used[-1]:
+        return f", seen from {low:.3g} Hz up"
+    return f", seen up to {high:.3g} Hz" if low <= used[0] else f", seen from {low:.3g} to {high:.3g} Hz"
+
+
+def _where(diagnosis: Diagnosis) -> str:
+    by_axis: dict[str, list[Region]] = {}
+    for region in diagnosis.where:
+        if not region.axis.startswith("missing_"):
+            by_axis.setdefault(region.axis, []).append(region)
+    if not by_axis:
+        return ""
+    trials, measured = by_axis.get("trial", []), len(diagnosis.dataset.trials)
+    spread = len(trials) > max(_SPREAD * measured, 1.0)
+    if spread:
+        del by_axis["trial"]
+    # The share of an axis is what all its regions hold together.
+    order = sorted(by_axis.values(), key=lambda regions: -sum(region.share_of_gap for region in regions))
+    said = []
+    if spread:
+        most = max(trials, key=lambda region: region.share_of_gap)
+        said.append(
+            f"{len(trials)} of {measured} trials are off, {most.value} holds most ({percent(most.share_of_gap)})"
+        )
+    for regions in order[:_MOST_REGIONS]:
+        words = [region_words(region) for region in regions[:_MOST_VALUES]]
+        more = len(regions) - len(words)
+        extent = ", ".join(extent for _, extent in words) + (f" and {more} more" if more else "")
+        share = min(sum(region.share_of_gap for region in regions), 1.0)
+        plural = "s" if len(regions) > 1 and words[0][0] in ("trial", "channel") else ""
+        said.append(f"{percent(share)} of the gap at {words[0][0]}{plural} {extent}")
+    return "; ".join(said) + "."
+
+
+def _missing(diagnosis: Diagnosis) -> Iterator[str]:
+    missing = diagnosis.missing_wrench
+    if missing is None:
+        return
+    for part, unit, first in _WRENCH:
+        found = _strongest(missing.by_frequency, first) or _strongest(missing.by_mode, first)
+        if found is not None:
+            label, axis, value, sigma = found
+            direction = f"{'-' if value < 0.0 else '+'}{'xyz'[axis]}"
+            size = with_sigma(abs(value), sigma, unit)
+            yield f"the model lacks a {part} of {size} towards {direction} {_PLACES.get(label, f'at {label}')}."
+
+
+def _strongest(by: Mapping[str, tuple[Floats, Floats]], first: int) -> tuple[str, int, float, float] | None:
+    """Return the component of a force or a torque that is farthest from zero, in standard deviations."""
+    best: tuple[str, int, float, float] | None = None
+    highest = _SIGNIFICANT
+    for label, (wrench, sigma) in by.items():
+        for axis in range(3):
+            value, error = float(wrench[first + axis]), float(sigma[first + axis])
+            if error > 0.0 and abs(value) > highest * error:
+                best, highest = (label, axis, value, error), abs(value) / error
+    return best
+
+
+def _what(effect: EffectEstimate) -> str:
+    numbers = [
+        f"{meaning_of(effect.name, key)} {with_interval(interval, unit_of(effect.name, key))}"
+        f"{'' if interval.identified else ' (hardly narrowed by these data)'}"
+        for key, interval in effect.parameters.items()
+    ]
+    return f"{title_of(effect.name)}, probability {percent(effect.probability)}: {'; '.join(numbers)}."
+
+
+def _how_far(diagnosis: Diagnosis) -> str:
+    gap = diagnosis.gap
+    count = len(gap.held_out_trials)
+    held_out = ""
+    if count:
+        held_out = (
+            f"on {count} trials, each left out of a fit once: " if count > 1 else "on one trial, left out of the fit: "
+        )
+    refitted = f"with only the sensor's nuisances refitted: {_sigmas(gap.after_nuisance_only)}"
+    if diagnosis.verdict == "no_gap":
+        return f"{held_out}{_sigmas(gap.before)} ({refitted}; noise alone: {_sigmas(gap.noise_floor)})."
+    shrink = gap.shrink
+    if isfinite(shrink.estimate):
+        share = f"; the gap shrinks by {percent(shrink.estimate)}"
+        if isfinite(shrink.low) and isfinite(shrink.high):
+            share += f" (90 % interval {100.0 * shrink.low:.0f} to {percent(shrink.high)})"
+    else:
+        share = ""
+    return (
+        f"{held_out}from {_sigmas(gap.before)} to {_sigmas(gap.after)} ({refitted}; "
+        f"noise alone: {_sigmas(gap.noise_floor)}){share}."
+    )
+
+
+def _ties(diagnosis: Diagnosis) -> Iterator[str]:
+    for effect in diagnosis.effects:
+        if effect.confounded_with:
+            others = " or ".join(title_of(name) for name in effect.confounded_with)
+            yield f"these trials cannot tell {title_of(effect.name)} from {others}."
+
+
+def _ruled_out(diagnosis: Diagnosis) -> Iterator[str]:
+    by_trial: dict[str, list[str]] = {}
+    for name, trial in list(diagnosis.ruled_out.items())[:_MOST_RULED_OUT]:
+        by_trial.setdefault(trial, []).append(title_of(name))
+    known = {trial.id: trial for trial in diagnosis.dataset.trials}
+    said = [
+        f"{', '.join(names)} by trial {trial}" + (f" ({condition_of(known[trial])})" if trial in known else "")
+        for trial, names in by_trial.items()
+    ]
+    more = len(diagnosis.ruled_out) - _MOST_RULED_OUT
+    if said:
+        yield "; ".join(said) + (f"; {more} more in the report" if more > 0 else "") + "."
+
+
+def _next(proposed: NextTrial) -> str:
+    bits = rounded(proposed.information_bits)
+    return f"{condition_of_table(proposed.trial)}: {reason_words(proposed.why)} ({bits} bit)."

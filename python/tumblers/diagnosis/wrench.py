@@ -1,0 +1,332 @@
+"""The missing wrench: the generalized force that the nominal model lacks to follow the data.
+
+A force and a torque w, substrate frame, constant over each of some windows of a trial, are added to the nominal run.
+With the whitened differences r, their derivatives J by w and the sensor's nuisances n (columns N), it minimises
+
+```text
+|r + J w + N n|² + Σ (w/s)² + Σ (n/σ_n)²,      s = 0.3 (weight + F_elect) for forces, 0.3 m B for torques
+```
+
+with Huber's weights, by two steps of Gauss and Newton's method; the derivatives are central differences, all in one
+native batch. What the friction of a contact swallows moves nothing: there the standard deviation stays that of the
+prior, and the wrench is unknown, not zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import ceil
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..field import RotatingField, TableField
+from ..scenario import Scenario
+from ..surroundings import Surroundings
+from .cells import MODES
+from .comparison import Comparison, Residual
+from .fit import HUBER, robust_cost
+from .pose import Path
+from .result import MissingWrench
+from .simulator import Edit, Job
+from .wrench_maps import mapped, wrench_regions
+from .wrench_means import Windows
+
+__all__ = ["missing_wrench", "wrench_regions"]
+
+Floats = NDArray[np.float64]
+
+_PRIOR_SHARE = 0.3
+# The derivatives' steps, as shares of the weight and of the moment that it turns the body over with: smaller ones meet
+# the jumps of a body that may or may not leave an edge.
+_STEP_FORCE, _STEP_TORQUE = 0.03, 0.02
+_ITERATIONS = 2
+# Shares of a Gauss-Newton step that are tried.
+_SHARES = (1.0, 0.5, 0.2)
+# Bounds of the work: trials, windows of one, windows of all, and steps of all derivatives.
+_MOST_TRIALS, _MOST_WINDOWS, _MOST_IN_ALL = 12, 12, 48
+_MOST_STEPS = 1_500_000
+_WINDOWS_AT_REST = 4
+
+
+@dataclass(frozen=True, eq=False)
+class _State:
+    """A trial with some wrench.
+
+    Attributes
+    ----------
+    wrench, values, path
+        The wrench by window, N and N m, shape (k, 6), the whitened differences, shape (n,), and the path.
+    error
+        Mean square of the differences that the derivatives did not foretell.
+    """
+
+    wrench: Floats
+    values: Floats
+    path: Path
+    error: float = 0.0
+
+
+def missing_wrench(
+    comparison: Comparison, residual: Residual, paths: Sequence[Path | None], most_windows: int = _MOST_IN_ALL
+) -> MissingWrench | None:
+    """Return the generalized force that is missing along the tracked trials.
+
+    Parameters
+    ----------
+    comparison
+        The dataset, ready to be compared.
+    residual
+        How wrong the nominal model is, the sensor's nuisances fitted.
+    paths
+        The nominal model's.
+    most_windows
+        Bound of the work: windows of all trials together. Trials with a smaller gap than others go without.
+
+    Returns
+    -------
+    MissingWrench or None
+        None where no trial has a track that the model can be compared with.
+
+    Raises
+    ------
+    SimulationError
+        The native module gave up.
+    """
+    trials = _chosen(comparison, residual, paths, most_windows)
+    if not trials:
+        return None
+    edges = {i: _edges(comparison, i, most) for i, most in _shared(comparison, trials, most_windows).items()}
+    prior = {i: _prior_sigma(comparison.simulator.nominal(i)) for i in trials}
+    states = {}
+    for i in trials:
+        path = paths[i]
+        assert path is not None
+        states[i] = _State(np.zeros((len(edges[i]) - 1, 6)), residual.trials[i], path)
+    slopes = _slopes(comparison, residual, states, edges, prior)
+    for _ in range(_ITERATIONS):
+        states = _improved(comparison, residual, states, edges, prior, slopes)
+    windows = [_windows(comparison, residual, i, states[i], paths[i], edges[i], prior[i], slopes[i]) for i in trials]
+    return mapped(comparison.dataset, windows)
+
+
+def _chosen(comparison: Comparison, residual: Residual, paths: Sequence[Path | None], most_windows: int) -> list[int]:
+    """Return the tracked trials that are off most, in the dataset's order."""
+    tracked = [
+        i
+        for i, path in enumerate(paths)
+        if path is not None and any(k.any() for k in comparison.floors[i].valid.values())
+    ]
+    off = {i: float(np.mean(np.minimum(residual.trials[i] ** 2, HUBER**2))) for i in tracked}
+    most = max(1, min(_MOST_TRIALS, most_windows // _WINDOWS_AT_REST))
+    return sorted(sorted(tracked, key=lambda i: -off[i])[:most])
+
+
+def _shared(comparison: Comparison, trials: Sequence[int], most_windows: int) -> dict[int, int]:
+    """Return how many windows each trial gets at most: as many as the others, or fewer where its run is long."""
+    each = max(1, most_windows // len(trials))
+    steps = {i: comparison.simulator.nominal(i).run.steps for i in trials}
+    share = _MOST_STEPS / len(trials) / (2 * 6 * each)
+    return {i: max(2, min(each, int(each * share / steps[i]))) for i in trials}
+
+
+def _edges(comparison: Comparison, trial: int, most: int) -> Floats:
+    """Return the windows' ends, s: quarter cycles, or whole numbers of them where those would be too many."""
+    observed, lab = comparison.readers[trial].observed, comparison.dataset.trials[trial]
+    # Beyond the last frame nothing says what is missing.
+    end = min(
+        float(observed.time_s[-1]) + observed.frame_interval_s, comparison.simulator.nominal(trial).run.duration_s
+    )
+    most = min(most, _MOST_WINDOWS)
+    if not isinstance(lab.field, RotatingField):
+        return np.linspace(0.0, end, min(most, _WINDOWS_AT_REST) + 1)
+    quarters = 4.0 * lab.field.frequency_Hz * end
+    each = ceil(quarters / most - 1e-9)
+    count = max(1, ceil(quarters / each - 0.25))
+    return np.append(np.arange(count) * each / (4.0 * lab.field.frequency_Hz), end)
+
+
+def _scales(scenario: Scenario) -> tuple[float, float, float]:
+    """Return the weight with F_elect, N, the magnetic moment times the field, N m, and the body's half length, m."""
+    robot, field = scenario.robot, scenario.field
+    weight = robot.total_mass_kg * scenario.run.gravity_m_per_s2 + scenario.substrate.electrostatic_force_N
+    strength = (
+        float(np.max(np.linalg.norm(field.field_T, axis=1))) if isinstance(field, TableField) else field.strength_T
+    )
+    moment = float(np.linalg.norm(robot.magnetic_moment_A_m2)) * strength
+    return weight, moment, float(np.max(np.abs(np.concatenate(robot.body().outline))))
+
+
+def _prior_sigma(scenario: Scenario) -> Floats:
+    weight, moment, reach = _scales(scenario)
+    # Without a field the weight bounds the torque that could be missing, and without a weight the field the force.
+    force, torque = max(weight, 1e-3 * moment / reach), max(moment, 1e-3 * weight * reach)
+    return _PRIOR_SHARE * np.array([force] * 3 + [torque] * 3)
+
+
+def _steps(scenario: Scenario) -> Floats:
+    weight, moment, reach = _scales(scenario)
+    force, torque = max(weight, 1e-3 * moment / reach), max(weight * reach, 1e-3 * moment)
+    return np.array([_STEP_FORCE * force] * 3 + [_STEP_TORQUE * torque] * 3)
+
+
+def _adds(edges: Floats, wrench: Floats) -> Edit:
+    def edit(scenario: Scenario) -> Scenario:
+        times = (*(float(t) for t in edges[:-1]), float(edges[-1]))
+        rows = (*(tuple(float(v) for v in row) for row in wrench), (0.0,) * 6)
+        table = Surroundings(wrench_time_s=times, wrench_N_N_m=rows)  # type: ignore[arg-type]
+        return replace(scenario, surroundings=table)
+
+    return edit
+
+
+def _differences(comparison: Comparison, residual: Residual, trial: int, path: Path) -> Floats:
+    """Return the whitened differences of a trial for the nuisances that fit the nominal model."""
+    floor = comparison.floors[trial]
+    raw = comparison.raw(trial, path, residual.local[trial], residual.camera)
+    terms = comparison.readers[trial].outcome_terms(path, residual.camera)
+    parts = [floor.whiten[name] @ raw[name][kept] for name, kept in floor.valid.items()]
+    outcomes = [terms[name] * scale for name, scale in floor.outcome_scale.items()]
+    return np.asarray(np.concatenate([*parts, outcomes]) - floor.tolerance @ residual.tolerance, dtype=np.float64)
+
+
+def _nuisances(comparison: Comparison, residual: Residual, trial: int, path: Path) -> Floats:
+    """Return the whitened columns of the nuisances in units of their priors, shape (n, m)."""
+    floor = comparison.floors[trial]
+    columns = comparison.readers[trial].nuisance_columns(path, residual.local[trial], residual.camera)
+    parts = [floor.whiten[name] @ columns[name][kept] for name, kept in floor.valid.items()]
+    rows = np.concatenate([*parts, np.zeros((len(floor.outcome_scale), 5))])
+    sigmas = np.concatenate([comparison.local_sigmas[trial], comparison.shared_sigmas])
+    return np.asarray(np.hstack([rows, -floor.tolerance]) * sigmas, dtype=np.float64)
+
+
+def _slopes(
+    comparison: Comparison,
+    residual: Residual,
+    states: dict[int, _State],
+    edges: dict[int, Floats],
+    prior: dict[int, Floats],
+) -> dict[int, Floats]:
+    """Return the derivatives of the differences by the wrenches in units of their priors, by trial, shape (n, 6 k).
+
+    A column counts as far as what a step changes turns round with the step.
+    """
+    jobs = []
+    steps = {i: _steps(comparison.simulator.nominal(i)) for i in states}
+    for i, state in states.items():
+        for k in range(state.wrench.size):
+            for sign in (1.0, -1.0):
+                moved = state.wrench.copy().ravel()
+                moved[k] += sign * steps[i][k % 6]
+                jobs.append(Job(i, edit=_adds(edges[i], moved.reshape(-1, 6))))
+    found = iter(comparison.simulator.run(jobs))
+    slopes = {}
+    for i, state in states.items():
+        columns = []
+        for k in range(state.wrench.size):
+            ends = [
+                state.values if p is None else _differences(comparison, residual, i, p)
+                for p in (next(found), next(found))
+            ]
+            odd, even = 0.5 * (ends[0] - ends[1]), 0.5 * (ends[0] + ends[1]) - state.values
+            turned, stays = float(odd @ odd), float(even @ even)
+            share = turned / max(turned + stays, 1e-300)
+            columns.append(odd * share * prior[i][k % 6] / steps[i][k % 6])
+        slopes[i] = np.column_stack(columns)
+    return slopes
+
+
+def _information(state: _State, slopes: Floats, nuisances: Floats) -> tuple[Floats, Floats]:
+    """Return JᵀJ and Jᵀr by the wrench, the nuisances taken out and Huber's weights in them."""
+    weight = np.sqrt(np.minimum(1.0, HUBER / np.maximum(np.abs(state.values), 1e-12)))[:, None]
+    j, n, r = slopes * weight, nuisances * weight, state.values * weight[:, 0]
+    inverse = np.linalg.inv(n.T @ n + np.eye(n.shape[1]))
+    return j.T @ j - j.T @ n @ inverse @ n.T @ j, j.T @ r - j.T @ n @ inverse @ (n.T @ r)
+
+
+def _improved(
+    comparison: Comparison,
+    residual: Residual,
+    states: dict[int, _State],
+    edges: dict[int, Floats],
+    prior: dict[int, Floats],
+    slopes: dict[int, Floats],
+) -> dict[int, _State]:
+    """Return the states after one step of Gauss and Newton's method, no longer than is of use."""
+    jobs: list[Job] = []
+    tried: dict[int, list[tuple[float, Floats]]] = {}
+    for i, state in states.items():
+        here = (state.wrench / prior[i]).ravel()
+        a, g = _information(state, slopes[i], _nuisances(comparison, residual, i, state.path))
+        step: Floats = -np.linalg.solve(a + np.eye(len(a)), g + here).astype(np.float64)
+        tried[i] = [(share, share * step) for share in _SHARES]
+        jobs += [Job(i, edit=_adds(edges[i], _moved(state, change, prior[i]))) for _, change in tried[i]]
+    found = iter(comparison.simulator.run(jobs))
+    out = {}
+    for i, state in states.items():
+        least, best, error = _cost(comparison, residual, i, state, prior[i]), state, 0.0
+        for share, change in tried[i]:
+            path = next(found)
+            if path is None:
+                error = max(error, HUBER**2)
+                continue
+            values = _differences(comparison, residual, i, path)
+            # The shortest step says how far the derivatives hold where no step is of use.
+            wrong = float(np.mean(np.minimum(np.abs(values - state.values - slopes[i] @ change), HUBER) ** 2))
+            moved = _State(_moved(state, change, prior[i]), values, path, wrong)
+            cost = _cost(comparison, residual, i, moved, prior[i])
+            if cost < least:
+                least, best = cost, moved
+            elif best is state:
+                error = wrong / share**2
+        out[i] = best if best is not state else replace(state, error=error)
+    return out
+
+
+def _moved(state: _State, change: Floats, prior: Floats) -> Floats:
+    return np.asarray(state.wrench + change.reshape(-1, 6) * prior, dtype=np.float64)
+
+
+def _cost(comparison: Comparison, residual: Residual, trial: int, state: _State, prior: Floats) -> float:
+    """Return the objective, the nuisances at their best."""
+    n = _nuisances(comparison, residual, trial, state.path)
+    weight = np.sqrt(np.minimum(1.0, HUBER / np.maximum(np.abs(state.values), 1e-12)))[:, None]
+    best = -np.linalg.solve(
+        (n * weight).T @ (n * weight) + np.eye(n.shape[1]), (n * weight).T @ (state.values * weight[:, 0])
+    )
+    return robust_cost(state.values + n @ best) + float(best @ best) + float(np.sum((state.wrench / prior) ** 2))
+
+
+def _windows(
+    comparison: Comparison,
+    residual: Residual,
+    trial: int,
+    state: _State,
+    nominal: Path | None,
+    edges: Floats,
+    prior: Floats,
+    slopes: Floats,
+) -> Windows:
+    assert nominal is not None
+    a, _ = _information(state, slopes, _nuisances(comparison, residual, trial, state.path))
+    # A wrench that leaves a gap, or does not do what its derivatives foretell, is known less well than by noise alone.
+    spread = max(1.0, float(np.mean(np.minimum(state.values**2, HUBER**2)))) + state.error
+    scale = np.tile(prior, len(edges) - 1)
+    information = a / spread / np.outer(scale, scale)
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    modes = []
+    for first, last in pairwise(edges):
+        seen = nominal.mode_at(np.linspace(first, last, 20))
+        modes.append(MODES[int(np.bincount(seen, minlength=len(MODES)).argmax())])
+    return Windows(
+        trial=trial,
+        start_s=edges[:-1],
+        end_s=edges[1:],
+        wrench=state.wrench,
+        information=information,
+        prior_sigma=prior,
+        mode=tuple(modes),
+        place_y_m=nominal.at(middle)[0][:, 1],
+    )

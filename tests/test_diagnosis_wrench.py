@@ -1,0 +1,110 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tumblers.dataset import Dataset, LabTrial, Outcome, Sensor, Track
+from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.pose import body_axis, tilt_of
+from tumblers.diagnosis.result import MissingWrench
+from tumblers.diagnosis.simulator import Job, Simulator
+from tumblers.diagnosis.wrench import missing_wrench, wrench_regions
+from tumblers.model import Model
+from tumblers.presets import ROBOTS, SUBSTRATES, drive
+from tumblers.scenario import Scenario
+from tumblers.surroundings import Surroundings
+
+# A sixth of the weight with F_elect: at 10 and 12 Hz the robot hops, and is pushed on while it is in the air.
+PUSH_N = 1e-7
+
+
+def lab(push_N: float, seed: int, frequencies: tuple[float, ...] = (1.0, 10.0, 12.0)) -> Dataset:
+    def pushed(scenario: Scenario) -> Scenario:
+        return replace(scenario, surroundings=Surroundings(force_N=(0.0, push_N, 0.0)))
+
+    rng = np.random.default_rng(seed)
+    empty = Dataset(
+        title="toy",
+        robot=ROBOTS["cuboid"].value,
+        substrate=SUBSTRATES["paper"].value,
+        model=Model(magnetic_torque="midpoint"),
+        sensor=Sensor(position_noise_m=3e-6, angle_noise_deg=1.0),
+        trials=tuple(
+            LabTrial(id=f"f{f:g}", field=drive(0.010, f), duration_s=0.8, outcome=Outcome(climbs=True))
+            for f in frequencies
+        ),
+    )
+    simulator = Simulator(empty, 1)
+    simulator.step_s = [1.5e-4] * len(frequencies)
+    trials = []
+    for path, trial in zip(
+        simulator.run([Job(i, edit=pushed) for i in range(len(frequencies))]), empty.trials, strict=True
+    ):
+        assert path is not None
+        time = np.arange(0.0, trial.duration_s - 0.01, 1.0 / 60.0)
+        place, turned = path.at(time)
+        seen = dict(zip(("x_m", "y_m", "z_m"), place.T + rng.normal(0.0, 3e-6, (3, len(time))), strict=True))
+        seen["tilt_deg"] = np.degrees(tilt_of(body_axis(turned))) + rng.normal(0.0, 1.0, len(time))
+        trials.append(replace(trial, outcome=None, track=Track(time_s=time, channels=seen)))
+    return replace(empty, trials=tuple(trials))
+
+
+def found(dataset: Dataset) -> MissingWrench:
+    comparison = Comparison(dataset, Simulator(dataset, 1))
+    paths = comparison.nominal_paths
+    missing = missing_wrench(comparison, comparison.residual(paths), paths, most_windows=18)
+    assert missing is not None
+    return missing
+
+
+def test_a_push_is_recovered_where_the_robot_hops() -> None:
+    missing = found(lab(PUSH_N, 1))
+    estimates = [(m[1], s[1]) for label, (m, s) in missing.by_frequency.items() if label in ("10 Hz", "12 Hz")]
+    assert len(estimates) == 2
+    weights = np.array([s**-2 for _, s in estimates])
+    mean = float(weights @ [m for m, _ in estimates] / weights.sum())
+    sigma = float(weights.sum() ** -0.5)
+    assert abs(mean - PUSH_N) < 3.0 * sigma
+    assert mean > 4.0 * sigma
+    regions = wrench_regions(missing)
+    assert (regions[0].axis, regions[0].value) == ("missing_force", "y")
+    assert regions[0].share_of_gap > 0.5
+
+
+@pytest.mark.parametrize("seed", [2, 3])
+def test_no_gap_gives_no_wrench(seed: int) -> None:
+    missing = found(lab(0.0, seed))
+    assert np.mean(np.abs(missing.wrench) < 2.5 * missing.sigma) > 0.97
+    assert wrench_regions(missing) == ()
+
+
+def test_a_force_that_friction_swallows_stays_unknown() -> None:
+    missing = found(lab(0.0, 4, (1.0,)))
+    assert (missing.sigma <= missing.prior_sigma * (1.0 + 1e-9)).all()
+    # A torque about the substrate's normal turns nothing while friction locks the spin.
+    assert (missing.sigma[:, 5] > 0.5 * missing.prior_sigma[5]).any()
+
+
+def test_windows_cover_the_tracks() -> None:
+    missing = found(lab(0.0, 5))
+    assert set(missing.trials) == {"f1", "f10", "f12"}
+    for trial in set(missing.trials):
+        mine = np.array([t == trial for t in missing.trials])
+        assert missing.start_s[mine][0] == 0.0
+        assert np.allclose(missing.start_s[mine][1:], missing.end_s[mine][:-1])
+        assert missing.end_s[mine][-1] > 0.75
+    assert missing.wrench.shape == missing.sigma.shape == (len(missing.trials), 6)
+    assert set(missing.by_frequency) == {"1 Hz", "10 Hz", "12 Hz"}
+    assert missing.by_mode
+    assert missing.by_place
+    assert missing.by_phase
+
+
+def test_outcomes_alone_have_no_wrench() -> None:
+    dataset = lab(0.0, 6, (1.0,))
+    bare = replace(dataset, trials=tuple(replace(t, track=None, outcome=Outcome(climbs=True)) for t in dataset.trials))
+    comparison = Comparison(bare, Simulator(bare, 1))
+    paths = comparison.nominal_paths
+    assert missing_wrench(comparison, comparison.residual(paths), paths) is None
