@@ -1,0 +1,137 @@
+"""`Cause`: why a world is not its model, and in what size."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import Any
+
+import numpy as np
+
+from ..effects.base import Effect
+from ..effects.catalogue import CATALOGUE
+from ..robot import Robot
+from ..scenario import Scenario
+from .forms import FORMS, SHAPES, scaled
+from .law import EffectLaw, Law
+from .outside import OUTSIDE, Outside
+
+__all__ = ["CatalogueCause", "Cause", "OutsideCause"]
+
+
+class Cause(ABC):
+    """Why a world is not its model.
+
+    Attributes
+    ----------
+    name, form
+        The cause's name, and ``catalogue``, the name of another form, or ``outside``.
+    """
+
+    name: str
+    form: str
+
+    @abstractmethod
+    def law(self, size: float) -> Law:
+        """Return the law of this cause.
+
+        Parameters
+        ----------
+        size
+            Share of the drawn cause, from 0 to 1.
+        """
+
+    @abstractmethod
+    def parameters(self, size: float) -> dict[str, Any]:
+        """Return the cause's numbers at a size."""
+
+    def where(self, size: float) -> dict[str, tuple[float, float]]:  # noqa: ARG002
+        """Return the part of the data in which the cause acts, by the axes of a diagnosis; empty if in all."""
+        return {}
+
+
+class CatalogueCause(Cause):
+    """An effect of the catalogue.
+
+    Parameters
+    ----------
+    name
+        Its name.
+    other_form
+        Whether it takes another form than the catalogue's, where there is one.
+    scenarios
+        Nominal scenarios of the lab, for the effect's ranges.
+    rng
+        What its parameters are drawn from.
+    """
+
+    def __init__(self, name: str, other_form: bool, scenarios: list[Scenario], rng: np.random.Generator) -> None:
+        self.name = name
+        self.effect = _draw(CATALOGUE[name], scenarios, rng)
+        self.form, self._form = "catalogue", None
+        self._seed = int(rng.integers(2**63))
+        if other_form and name in FORMS:
+            self.form, self._form = FORMS[name]
+
+    def law(self, size: float) -> Law:
+        """Return the law of this effect in its form."""
+        effect = scaled(self.effect, size)
+        # Each size of a cause has the same details.
+        return EffectLaw(effect) if self._form is None else self._form(effect, np.random.default_rng(self._seed))
+
+    def parameters(self, size: float) -> dict[str, Any]:
+        """Return the effect's parameters by their keys."""
+        effect = scaled(self.effect, size)
+        return {p.key: value for p, value in zip(effect.parameters, effect.vector(), strict=True)}
+
+
+class OutsideCause(Cause):
+    """A cause that is outside the catalogue.
+
+    Parameters
+    ----------
+    name
+        Its name.
+    robot
+        The robot that it befalls.
+    rng
+        What its numbers are drawn from.
+    """
+
+    form = "outside"
+
+    def __init__(self, name: str, robot: Robot, rng: np.random.Generator) -> None:
+        self.name = name
+        self._outside = OUTSIDE[name](rng, robot)
+
+    def law(self, size: float) -> Outside:
+        """Return the law of this cause."""
+        return self._outside.with_size(size)
+
+    def parameters(self, size: float) -> dict[str, Any]:
+        """Return the cause's numbers by name."""
+        return self.law(size).parameters()
+
+    def where(self, size: float) -> dict[str, tuple[float, float]]:
+        """Return the part of the data in which the cause acts, by the axes of a diagnosis; empty if in all."""
+        return dict(self.law(size).where())
+
+
+def _draw(kind: type[Effect], scenarios: list[Scenario], rng: np.random.Generator) -> Effect:
+    """Return an effect of a size that a lab might meet, of which any share may be taken."""
+    # Where an effect cannot be at work its range is a point: take the widest.
+    ranges = max((kind.ranges(s) for s in scenarios), key=lambda r: sum(high - low for low, high in r))
+    free = [i for i, p in enumerate(kind.parameters) if p.key not in SHAPES]
+    acting = [i for i in free if rng.random() < 0.5] or [free[int(rng.integers(len(free)))]]
+    values = [p.neutral for p in kind.parameters]
+    for i, (parameter, (low, high)) in enumerate(zip(kind.parameters, ranges, strict=True)):
+        if parameter.key == "theta2_deg":
+            values[i] = float(rng.uniform(low, high))
+        elif parameter.key == "wavelength_m":
+            values[i] = float(np.exp(rng.uniform(np.log(8e-4), np.log(6e-3))))
+        elif parameter.key == "frequency_exponent":
+            values[i] = float(rng.choice([0.0, rng.uniform(1.0, 3.0)]))
+        elif i in acting:
+            ends = [end for end in (low, high) if end != parameter.neutral]
+            end = ends[int(rng.integers(len(ends)))] if ends else parameter.neutral
+            values[i] = parameter.neutral + float(rng.uniform(0.4, 1.0)) * (end - parameter.neutral)
+    return kind.from_vector(values)

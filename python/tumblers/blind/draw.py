@@ -1,0 +1,231 @@
+"""Draws a dataset and its truth."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import inf, log
+
+import numpy as np
+
+from ..dataset import Dataset
+from ..effects.catalogue import CATALOGUE
+from ..errors import InputError, SimulationError
+from ..field import RotatingField
+from ..model import Model
+from .answer import Answer, TrueCause
+from .cause import CatalogueCause, Cause, OutsideCause
+from .jitter import Jitter
+from .lab import Lab
+from .law import Law
+from .layout import draw_lab, jitter_strength, world_scenario
+from .schedule import task
+from .sensing import Nuisances, measure
+from .strength import Strength, strength
+from .world import Scene, Solver, watch
+
+__all__ = ["draw_dataset"]
+
+_TARGETS = (0.7, 1.5, 3.0, 6.0, 12.0, 25.0)
+# Two effects, and causes outside the catalogue, are to be seen.
+_CLEAR_TARGETS, _CLEAR = (6.0, 12.0, 25.0), 4.5
+# A world without causes is one that its lab would call explained: what jitter shows stays below the noise.
+_QUIET, _QUIET_TRIAL = 0.7, 1.3
+# What one effect should reach even where its range does not allow the target.
+_SEEN = 3.0
+_LABS, _DRAWS, _BISECTIONS, _CLOSE = 12, 3, 9, 0.12
+# Labs after which another pair of effects is drawn: one of them may have no part in any lab's motion.
+_LABS_PER_PAIR = 3
+_SMALLEST = 1e-3
+_OTHER_FORM = 1.0 / 3.0
+
+
+@dataclass(frozen=True, slots=True)
+class _World:
+    lab: Lab
+    jitter: Jitter
+    plain: tuple[Scene, ...]
+    jitter_sigma: float
+
+    def scenes(
+        self, laws: Sequence[Law], late_s: Sequence[float] | None = None, solver: Solver = "reduced"
+    ) -> list[Scene]:
+        scenes = []
+        for i, plan in enumerate(self.lab.plans):
+            frames = self.lab.frames(plan) + (late_s[i] if late_s is not None and plan.tracked else 0.0)
+            scenario = world_scenario(self.lab, plan, self.jitter)
+            scenes.append(watch(scenario, laws, frames, trial=i, solver=solver))
+        return scenes
+
+    def strength(self, laws: Sequence[Law]) -> Strength | None:
+        """Return how much the laws show, or None where the world does not stand them."""
+        try:
+            return strength(self.lab, self.scenes(laws), self.plain)
+        except (ArithmeticError, InputError):
+            return None
+
+
+@dataclass(frozen=True, slots=True)
+class _Sized:
+    cause: Cause
+    size: float
+    sigma: float
+
+    @property
+    def law(self) -> Law:
+        return self.cause.law(self.size)
+
+
+def draw_dataset(seed: int, index: int) -> tuple[Dataset, Answer]:
+    """Return a dataset and its truth, which depend on nothing but the seed and the number.
+
+    Parameters
+    ----------
+    seed, index
+        The seed of all datasets and the number of this one.
+
+    Raises
+    ------
+    SimulationError
+        No world of the drawn kind could be made.
+    """
+    rng = np.random.default_rng([seed, 0, index])
+    about = task(seed, index)
+    targets = _TARGETS if about.kind == "one" else _CLEAR_TARGETS
+    target = float(rng.choice(targets))
+    other = [bool(rng.random() < _OTHER_FORM) for _ in about.names]
+    names = about.names
+    found: list[tuple[_World, list[_Sized]]] = []
+    for number in range(_LABS):
+        world = _draw_world(rng)
+        if world is None:
+            continue
+        if about.kind == "two" and number and number % _LABS_PER_PAIR == 0:
+            first, second = rng.choice(len(CATALOGUE), size=2, replace=False).tolist()
+            names = (tuple(CATALOGUE)[first], tuple(CATALOGUE)[second])
+        sized = _sizes(world, about.kind, names, other, target, rng)
+        if sized is None:
+            continue
+        found.append((world, sized))
+        least = min(_SEEN, target) * (1.0 - _CLOSE) if about.kind == "one" else _CLEAR
+        if min((s.sigma for s in sized), default=inf) >= least:
+            measured = _measured(about.kind, world, sized, rng, index)
+            if measured is not None:
+                return measured
+            found.pop()
+    # None is as strong as it should be: the strongest has to do.
+    for world, sized in sorted(found, key=lambda pair: -min((s.sigma for s in pair[1]), default=inf)):
+        measured = _measured(about.kind, world, sized, rng, index)
+        if measured is not None:
+            return measured
+    raise SimulationError(f"no world for {' and '.join(about.names) or 'no effect'} was found in {_LABS} labs")
+
+
+def _draw_world(rng: np.random.Generator) -> _World | None:
+    for _ in range(_LABS):
+        lab, jitter = draw_lab(rng)
+        if not 6 <= len(lab.plans) <= 14:
+            continue
+        shown = jitter_strength(lab, jitter)
+        if shown.sigma <= _QUIET and max(shown.by_trial) <= _QUIET_TRIAL:
+            bare = _World(lab, jitter, (), shown.sigma)
+            return replace(bare, plain=tuple(bare.scenes(())))
+    return None
+
+
+def _sizes(
+    world: _World, kind: str, names: Sequence[str], other: Sequence[bool], target: float, rng: np.random.Generator
+) -> list[_Sized] | None:
+    """Return the causes in sizes that are close to the target, or as close as their ranges allow."""
+    sized: list[_Sized] = []
+    for name, form in zip(names, other, strict=True):
+        found: list[_Sized] = []
+        for _ in range(_DRAWS):
+            cause: Cause
+            if kind == "outside":
+                cause = OutsideCause(name, world.lab.robot, rng)
+            else:
+                scenarios = [world.lab.scenario(p) for p in world.lab.plans if isinstance(p.field, RotatingField)]
+                cause = CatalogueCause(name, form, scenarios, rng)
+            one = _size(world, cause, target)
+            if one is not None:
+                found.append(one)
+                if abs(log(one.sigma / target)) < 2.0 * _CLOSE:
+                    break
+        if not found or (kind != "one" and max(s.sigma for s in found) < _CLEAR):
+            return [*sized, max(found, key=lambda s: s.sigma)] if found else None
+        sized.append(min(found, key=lambda s: abs(log(s.sigma / target))))
+    if len(sized) > 1 and world.strength([s.law for s in sized]) is None:
+        return None
+    return sized
+
+
+def _size(world: _World, cause: Cause, target: float) -> _Sized | None:
+    """Return the cause in the size whose strength is the closest to the target, by bisection."""
+    found: list[_Sized] = []
+
+    def sigma(size: float) -> float:
+        shown = world.strength([cause.law(size)])
+        if shown is None:
+            return inf
+        if shown.sigma > 0.0:
+            found.append(_Sized(cause, size, shown.sigma))
+        return shown.sigma
+
+    low, high = log(_SMALLEST), 0.0
+    if sigma(1.0) > target * (1.0 + _CLOSE):
+        for _ in range(_BISECTIONS):
+            middle = 0.5 * (low + high)
+            reached = sigma(float(np.exp(middle)))
+            if abs(reached / target - 1.0) < _CLOSE:
+                break
+            low, high = (low, middle) if reached > target else (middle, high)
+    return min(found, key=lambda s: abs(log(s.sigma / target)), default=None)
+
+
+def _measured(
+    kind: str, world: _World, sized: list[_Sized], rng: np.random.Generator, index: int
+) -> tuple[Dataset, Answer] | None:
+    """Return what the lab writes down of the world, or None where the motion diverges."""
+    laws = [s.law for s in sized]
+    nuisances = Nuisances.draw(rng, world.lab)
+    shown = world.strength(laws)
+    try:
+        scenes = world.scenes(laws, nuisances.clock_s, "general")
+    except (ArithmeticError, InputError):
+        return None
+    if shown is None:
+        return None
+    trials = [measure(world.lab, i, scene, nuisances, rng) for i, scene in enumerate(scenes)]
+    ids = [plan.id for plan in world.lab.plans]
+    last = max(plan.duration_s for plan in world.lab.plans)
+    where = {
+        axis: (low, min(high, last) if axis == "time_s" else high)
+        for s in sized
+        for axis, (low, high) in s.cause.where(s.size).items()
+    }
+    answer = Answer(
+        kind=kind,
+        effects=tuple(
+            TrueCause(
+                name=s.cause.name, form=s.cause.form, parameters=s.cause.parameters(s.size), strength_sigma=s.sigma
+            )
+            for s in sized
+        ),
+        strength_sigma=shown.sigma,
+        strength_by_trial=dict(zip(ids, shown.by_trial, strict=True)),
+        affected_trials=tuple(i for i, sigma in zip(ids, shown.by_trial, strict=True) if sigma >= 1.0),
+        where=where,
+        nuisances=nuisances.table(),
+        jitter=world.jitter.table(),
+        jitter_sigma=world.jitter_sigma,
+    )
+    dataset = Dataset(
+        title=f"lab {index}",
+        robot=world.lab.robot,
+        substrate=world.lab.substrate,
+        model=Model(magnetic_torque="midpoint"),
+        sensor=world.lab.sensor,
+        trials=tuple(trials),
+    )
+    return dataset, answer

@@ -1,0 +1,158 @@
+"""The scores as a page and as tables on a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from .score import Criterion, Scores, Share
+
+__all__ = ["page_of", "print_scores"]
+
+
+def page_of(scores: Scores) -> str:
+    """Return the page ``blind-results.md``.
+
+    Parameters
+    ----------
+    scores
+        The scores.
+    """
+    versions = ", ".join(scores.versions) or "unknown"
+    parts = [
+        "# Diagnoses of datasets whose cause is withheld",
+        f"{scores.datasets} datasets drawn from seed {scores.seed}, {scores.diagnosed} diagnosed by version {versions}."
+        " Every answer was sealed before the diagnosis and its seal checked after it. Made by\n\n"
+        f"```\ntumblers blind make --seed {scores.seed} --count {scores.datasets} --out DIR\n"
+        "tumblers blind run DIR\ntumblers blind score DIR --answers DIR/answers.json --page blind-results.md\n```",
+        "The strength of a cause is the root mean square of what it changes in all numbers that were observed, in "
+        "standard deviations of their noise, after the sensor's stated tolerances (origin, clock, heading, scale) have "
+        "taken what they can.",
+        "## What has to hold",
+        _table(("", "found", "wanted", "of", "met"), [_criterion_row(c) for c in scores.criteria]),
+        "## What was named first",
+        "Rows are truths, columns what a diagnosis said: the first effect where it is `explained`, else its verdict. "
+        "Datasets with two effects are below.",
+        _confusion(scores),
+        "## Verdicts by kind of truth",
+        _table(
+            ("truth", "verdicts"),
+            [
+                (kind, ", ".join(f"{n} {word}" for word, n in said.items()) or "-")
+                for kind, said in scores.verdicts.items()
+            ],
+        ),
+        "## One effect, by its strength",
+        _table(
+            ("strength, sigma", "named first", "of"),
+            [(name, _percent(s.share), str(s.count)) for name, s in scores.by_strength.items()],
+        ),
+        "## Calibration",
+        "The stated probability of the best hypothesis against how often it was the truth, for truths in the catalogue "
+        f"of 1 sigma or more and for no effect. Expected calibration error: {_number(scores.calibration_error)}.",
+        _table(
+            ("stated", "mean", "right", "of"),
+            [(name, _number(said), _number(right), str(n)) for name, (said, right, n) in scores.reliability.items()],
+        ),
+        "## Parameters inside their 90 % interval",
+        "Rightly named effects in the catalogue's form.",
+        _table(
+            ("effect", "inside", "of"),
+            [(name, _percent(s.share), str(s.count)) for name, s in scores.coverage_by_effect.items()],
+        ),
+        "## Where",
+        "Overlap of the trials that were pointed out with those that the causes affect by 1 sigma or more (what both "
+        "share over all of them), where that is a part of the trials; and regions of other axes in which a cause acts, "
+        "overlapped by half or more.",
+        _table(
+            ("axis", "by half or more", "of"),
+            [_share_row("trial", _halves(scores)), *(_share_row(axis, s) for axis, s in scores.regions.items())],
+        ),
+        "## Time",
+        f"Mean {_number(scores.seconds_mean, 1)} s, longest {_number(scores.seconds_longest, 1)} s, one thread each.",
+        "## Every dataset",
+        _table(
+            ("dataset", "truth", "strength, sigma", "verdict", "named", "shrink", "s"),
+            [
+                (
+                    str(row["dataset"]),
+                    " + ".join(row["truth"]) or "none",
+                    f"{row['strength_sigma']:.1f}",
+                    str(row["verdict"]),
+                    " + ".join(row["named"]) or "-",
+                    _number(row["shrink"]),
+                    _number(row["seconds"], 1),
+                )
+                for row in scores.rows
+            ],
+        ),
+    ]
+    return "\n\n".join(parts) + "\n"
+
+
+def print_scores(scores: Scores) -> None:
+    """Print what has to hold, and the accuracy by strength, as tables.
+
+    Parameters
+    ----------
+    scores
+        The scores.
+    """
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console()
+    table = Table(title=f"{scores.diagnosed} of {scores.datasets} datasets diagnosed, every seal whole")
+    for heading in ("", "found", "wanted", "of", "met"):
+        table.add_column(heading, overflow="fold")
+    for criterion in scores.criteria:
+        table.add_row(*_criterion_row(criterion))
+    console.print(table)
+    table = Table(title="one effect, by its strength")
+    for heading in ("sigma", "named first", "of"):
+        table.add_column(heading)
+    for name, share in scores.by_strength.items():
+        table.add_row(name, _percent(share.share), str(share.count))
+    console.print(table)
+
+
+def _criterion_row(criterion: Criterion) -> tuple[str, str, str, str, str]:
+    open_end = criterion.high == float("inf")
+    if criterion.low == 0.0:
+        wanted = f"at most {criterion.high:g}"
+    elif open_end or criterion.high == 1.0:
+        wanted = f"at least {criterion.low:g}"
+    else:
+        wanted = f"{criterion.low:g} to {criterion.high:g}"
+    met = {True: "yes", False: "**no**", None: "nothing to measure"}[criterion.met]
+    digits = 0 if open_end else 2
+    return criterion.words, _number(criterion.value, digits), wanted, str(criterion.count), met
+
+
+def _confusion(scores: Scores) -> str:
+    said = sorted({word for row in scores.confusion.values() for word in row})
+    rows = [(truth, *(str(row.get(word, "")) for word in said)) for truth, row in scores.confusion.items()]
+    return _table(("truth", *said), rows)
+
+
+def _halves(scores: Scores) -> Share:
+    return Share(sum(overlap >= 0.5 for overlap in scores.overlaps.values()), len(scores.overlaps))
+
+
+def _share_row(axis: str, share: Share) -> tuple[str, str, str]:
+    return axis, _percent(share.share), str(share.count)
+
+
+def _table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    if not rows:
+        return "None."
+    lines = [headings, ["---"] * len(headings), *rows]
+    return "\n".join(f"| {' | '.join(cell.replace('|', '/') for cell in line)} |" for line in lines)
+
+
+def _number(value: Any, digits: int = 2) -> str:
+    return "-" if value is None else f"{value:.{digits}f}"
+
+
+def _percent(share: float | None) -> str:
+    return "-" if share is None else f"{100.0 * share:.0f} %"

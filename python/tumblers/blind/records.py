@@ -1,0 +1,128 @@
+"""`Record`: one dataset's truth beside its diagnosis."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from ..errors import InputError, show, unreadable
+from .answer import Answer, seal
+from .make import ANSWERS_FORMAT, SEAL
+from .run import DIAGNOSIS, RECORD
+
+__all__ = ["Record", "read_records"]
+
+_DIAGNOSIS_FORMAT = "tumblers-diagnosis/1"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Record:
+    """One dataset's truth beside its diagnosis.
+
+    Attributes
+    ----------
+    dataset
+        The folder's name.
+    answer
+        The truth, whose seal was whole.
+    diagnosis
+        The table of ``diagnosis.json``; None where the dataset has none.
+    seconds, version
+        How long the diagnosis took, and by which version it is.
+    """
+
+    dataset: str
+    answer: Answer
+    diagnosis: Mapping[str, Any] | None
+    seconds: float | None = None
+    version: str | None = None
+
+    @property
+    def truth(self) -> tuple[str, ...]:
+        """Names of the causes that were at work."""
+        return tuple(effect.name for effect in self.answer.effects)
+
+    @property
+    def verdict(self) -> str:
+        """The diagnosis's verdict, or ``failed``."""
+        return "failed" if self.diagnosis is None else str(self.diagnosis["verdict"])
+
+    @property
+    def named(self) -> tuple[str, ...]:
+        """Names of the effects that the diagnosis chose, in its order."""
+        return () if self.diagnosis is None else tuple(effect["name"] for effect in self.diagnosis["effects"])
+
+    @property
+    def same_form(self) -> bool:
+        """Whether every cause has the catalogue's form."""
+        return all(effect.form == "catalogue" for effect in self.answer.effects)
+
+
+def read_records(directory: str | PathLike[str], answers: str | PathLike[str]) -> tuple[int, list[Record]]:
+    """Return the seed and the records of a folder, after every seal was checked.
+
+    Parameters
+    ----------
+    directory
+        The folder of datasets.
+    answers
+        The file with the answers.
+
+    Raises
+    ------
+    InputError
+        A file that is no such file, a dataset without an answer or a seal, or an answer that is not the sealed one.
+    """
+    directory, answers = Path(directory), Path(answers)
+    table = _json(answers, ANSWERS_FORMAT)
+    try:
+        entries = [(entry["dataset"], entry["salt"], entry["answer"]) for entry in table["answers"]]
+        seed = int(table["seed"])
+    except (KeyError, TypeError, ValueError):
+        raise InputError(
+            "answers", "no list of datasets, salts and answers", f"a {ANSWERS_FORMAT} file", answers
+        ) from None
+    names = [name for name, _, _ in entries]
+    for path in sorted(directory.glob("dataset-*")):
+        if path.name not in names:
+            raise InputError("answers", f"no answer for {path.name}", "one for every dataset", answers)
+    if not names:
+        raise InputError("answers", "no answers", "at least one", answers)
+    return seed, [_record(directory / name, salt, answer, answers) for name, salt, answer in entries]
+
+
+def _record(folder: Path, salt: object, answer: object, answers: Path) -> Record:
+    sealed = _json(folder / SEAL, "tumblers-seal/1")
+    if not isinstance(salt, str) or not isinstance(answer, dict) or sealed.get("sha256") != seal(salt, answer):
+        raise InputError(folder.name, "an answer that is not the sealed one", f"that of {folder / SEAL}", answers)
+    try:
+        truth = Answer.from_table(answer)
+    except (KeyError, TypeError, ValueError):
+        raise InputError(folder.name, show(answer), "an answer of this version", answers) from None
+    diagnosis = _json(folder / DIAGNOSIS, _DIAGNOSIS_FORMAT) if (folder / DIAGNOSIS).exists() else None
+    run = _json(folder / RECORD, "tumblers-blind-run/1") if (folder / RECORD).exists() else {}
+    return Record(
+        dataset=folder.name,
+        answer=truth,
+        diagnosis=diagnosis,
+        seconds=run.get("seconds"),
+        version=run.get("version"),
+    )
+
+
+def _json(path: Path, version: str) -> dict[str, Any]:
+    try:
+        table = json.loads(path.read_bytes())
+    except OSError as error:
+        raise InputError(None, unreadable(error), f"a {version} file", path) from None
+    except ValueError:
+        raise InputError(None, "malformed JSON", f"a {version} file", path) from None
+    if not isinstance(table, dict) or table.get("format") != version:
+        raise InputError(
+            "format", show(table.get("format") if isinstance(table, dict) else table), f"'{version}'", path
+        )
+    return table

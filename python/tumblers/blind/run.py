@@ -1,0 +1,104 @@
+"""`run`: diagnoses every dataset of a folder, without its answers."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Collection
+from concurrent.futures import Future, as_completed
+from os import PathLike
+from pathlib import Path
+from time import perf_counter
+from typing import NamedTuple
+
+from ..atomic import write_files
+from ..errors import InputError
+from ..progress import OnProgress, native_call
+from ..version import __version__
+from .make import workers
+
+__all__ = ["DIAGNOSIS", "RECORD", "RECORD_FORMAT", "Done", "run"]
+
+DIAGNOSIS = "diagnosis.json"
+# What was computed beside the diagnosis: how long it took, and by which version.
+RECORD, RECORD_FORMAT = "run.json", "tumblers-blind-run/1"
+
+
+class Done(NamedTuple):
+    """How many datasets were diagnosed now, had been before, and failed."""
+
+    diagnosed: int
+    before: int
+    failed: int
+
+
+def run(
+    directory: str | PathLike[str],
+    *,
+    jobs: int | None = None,
+    only: Collection[int] | None = None,
+    progress: bool | OnProgress = False,
+) -> Done:
+    """Write ``diagnosis.json`` beside every dataset that has none of this version; what is done stays done.
+
+    Parameters
+    ----------
+    directory
+        The folder that `make` wrote.
+    jobs
+        Number of processes, all cores by default; each diagnoses one dataset on one thread.
+    only
+        Numbers of the datasets to diagnose, all if None.
+    progress
+        True for a progress bar over the datasets, or a callback that is told how many are done.
+
+    Raises
+    ------
+    InputError
+        A folder without datasets, or a number of a dataset that is not there.
+    OSError
+        A folder that cannot be written to, or a full disk.
+    """
+    folders = {int(path.name.removeprefix("dataset-")): path for path in sorted(Path(directory).glob("dataset-[0-9]*"))}
+    if not folders:
+        raise InputError(None, "no datasets", "a folder of `tumblers blind make`", directory)
+    for number in only or ():
+        if number not in folders:
+            raise InputError("only", str(number), f"numbers of datasets in '{directory}'")
+    chosen = [path for number, path in folders.items() if only is None or number in only]
+    waiting = [path for path in chosen if not _is_done(path)]
+    failed = 0
+    with native_call("diagnoses", len(waiting), progress) as on_progress, workers(jobs) as pool:
+        futures: list[Future[bool]] = [pool.submit(_diagnose, path) for path in waiting]
+        for count, future in enumerate(as_completed(futures), start=1):
+            failed += not future.result()
+            if on_progress is not None:
+                on_progress(count)
+    return Done(len(waiting) - failed, len(chosen) - len(waiting), failed)
+
+
+def _is_done(folder: Path) -> bool:
+    try:
+        record = json.loads((folder / RECORD).read_bytes())
+    except (OSError, ValueError):
+        return False
+    same = isinstance(record, dict) and record.get("version") == __version__ and record.get("error") is None
+    return same and (folder / DIAGNOSIS).exists()
+
+
+def _diagnose(folder: Path) -> bool:
+    """Diagnose a dataset; an error goes to its record, for one that fails must not stop the others."""
+    from ..dataset import load
+    from ..diagnosis import diagnose
+
+    start = perf_counter()
+    files: dict[Path, bytes | memoryview] = {}
+    error = None
+    try:
+        files[folder / DIAGNOSIS] = diagnose(load(folder), jobs=1).to_json().encode()
+    except Exception as raised:
+        error = f"{type(raised).__name__}: {' '.join(str(raised).split())}"
+        (folder / DIAGNOSIS).unlink(missing_ok=True)
+    record = {"format": RECORD_FORMAT, "version": __version__, "seconds": perf_counter() - start, "error": error}
+    # The record comes last: it says that the diagnosis is whole.
+    write_files({**files, folder / RECORD: (json.dumps(record) + "\n").encode()})
+    return error is None

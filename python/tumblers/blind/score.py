@@ -1,0 +1,381 @@
+"""`score`: how well diagnoses met the truth."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from math import inf
+from os import PathLike
+from pathlib import Path
+from statistics import mean, median
+from typing import Any
+
+from ..errors import TumblersError
+from .records import Record, read_records
+from .ties import difference_sigma, effect_of
+
+__all__ = ["Criterion", "Scores", "Share", "TieCheck", "score", "score_records"]
+
+FORMAT = "tumblers-blind-scores/1"
+STRENGTH_BINS = ((0.0, 1.0), (1.0, 3.0), (3.0, 10.0), (10.0, inf))
+PROBABILITY_BINS = ((0.0, 0.2), (0.2, 0.4), (0.4, 0.6), (0.6, 0.8), (0.8, 1.0))
+# An effect that is named in terms of another one is a tie where they differ by less than the noise.
+TIE_SIGMA = 1.0
+_CLEAR = 3.0
+_SLOWEST_S = 180.0
+
+TieCheck = Callable[[Record], float]
+
+
+@dataclass(frozen=True, slots=True)
+class Share:
+    """How many of how many."""
+
+    hits: int
+    count: int
+
+    @property
+    def share(self) -> float | None:
+        """Hits over count; None of none."""
+        return self.hits / self.count if self.count else None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Criterion:
+    """A number that has to be within bounds.
+
+    Attributes
+    ----------
+    words
+        What is measured.
+    value
+        What was found; None where there was nothing to measure.
+    low, high
+        The bounds.
+    count
+        Over how many.
+    """
+
+    words: str
+    value: float | None
+    low: float
+    high: float
+    count: int
+
+    @property
+    def met(self) -> bool | None:
+        """Whether it is met; None where there was nothing to measure."""
+        return None if self.value is None else self.low <= self.value <= self.high
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Scores:
+    """How well diagnoses met the truth.
+
+    Attributes
+    ----------
+    seed, versions, datasets, diagnosed
+        What was scored.
+    confusion
+        Truth (an effect, ``none``, ``outside``) to what was named first (an effect or the verdict) to a number, for
+        datasets with at most one cause.
+    by_strength
+        Strength's bin, sigma, to how many single effects were named first.
+    verdicts
+        Kind of truth to verdict to a number.
+    reliability
+        Stated probability's bin to (mean probability, share that was right, number).
+    calibration_error
+        Expected calibration error over these bins.
+    coverage_by_effect
+        Effect to how many of its parameters were inside their 90 % interval.
+    overlaps
+        Dataset to the overlap of the trials that were pointed out with those affected.
+    regions
+        Axis to how many regions in which a cause acts were overlapped by half or more.
+    seconds_mean, seconds_longest
+        Time of a diagnosis, s.
+    criteria
+        What has to hold.
+    rows
+        One line per dataset.
+    """
+
+    seed: int
+    versions: tuple[str, ...]
+    datasets: int
+    diagnosed: int
+    confusion: Mapping[str, Mapping[str, int]]
+    by_strength: Mapping[str, Share]
+    verdicts: Mapping[str, Mapping[str, int]]
+    reliability: Mapping[str, tuple[float, float, int]]
+    calibration_error: float | None
+    coverage_by_effect: Mapping[str, Share]
+    overlaps: Mapping[str, float]
+    regions: Mapping[str, Share]
+    seconds_mean: float | None
+    seconds_longest: float | None
+    criteria: tuple[Criterion, ...]
+    rows: tuple[Mapping[str, Any], ...]
+
+    def to_json(self) -> str:
+        """Return the scores as JSON."""
+        table = asdict(self)
+        for criterion, entry in zip(self.criteria, table["criteria"], strict=True):
+            entry["met"] = criterion.met
+            entry["high"] = None if criterion.high == inf else criterion.high
+        return json.dumps({"format": FORMAT, **table}, indent=1, allow_nan=False) + "\n"
+
+
+def score(directory: str | PathLike[str], answers: str | PathLike[str]) -> Scores:
+    """Check every seal of a folder, and score its diagnoses.
+
+    Parameters
+    ----------
+    directory
+        The folder of datasets and diagnoses.
+    answers
+        The file with the answers.
+
+    Raises
+    ------
+    InputError
+        A file that is refused, or an answer that is not the sealed one.
+    """
+    seed, records = read_records(directory, answers)
+    folder = Path(directory)
+    return score_records(records, seed, lambda record: _tie_sigma(folder / record.dataset, record))
+
+
+def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores:
+    """Score records.
+
+    Parameters
+    ----------
+    records
+        Truths beside diagnoses.
+    seed
+        What the datasets were drawn from.
+    tie
+        Returns by how many sigma the truth and the diagnosed effects of a record differ on its trials.
+    """
+    kinds = {kind: [r for r in records if r.answer.kind == kind] for kind in ("none", "one", "two", "outside")}
+    clear = [r for r in kinds["one"] if r.answer.strength_sigma >= _CLEAR]
+    first = [_named_first(r) for r in clear]
+    tied = [hit or _is_tie(r, tie) for hit, r in zip(first, clear, strict=True)]
+    reliability, calibration_error = _calibration(records)
+    coverage = _coverage(records)
+    covered = Share(sum(s.hits for s in coverage.values()), sum(s.count for s in coverage.values()))
+    overlaps = {r.dataset: overlap for r in records if (overlap := _overlap(r)) is not None}
+    shrinks = {
+        same: [s for r in clear if r.same_form == same and (s := _shrink(r)) is not None] for same in (True, False)
+    }
+    seconds = [r.seconds for r in records if r.seconds is not None]
+
+    def criterion(words: str, share: Share, low: float, high: float = 1.0) -> Criterion:
+        return Criterion(words=words, value=share.share, low=low, high=high, count=share.count)
+
+    def middle(words: str, values: Sequence[float], low: float) -> Criterion:
+        return Criterion(words=words, value=median(values) if values else None, low=low, high=1.0, count=len(values))
+
+    criteria = (
+        Criterion(words="datasets", value=float(len(records)), low=100.0, high=inf, count=len(records)),
+        criterion("one effect of 3 sigma or more: named first", _count(first), 0.90),
+        criterion("one effect of 3 sigma or more: named first or truly tied", _count(tied), 0.97),
+        criterion("two effects: both named", _count([set(r.truth) <= set(r.named) for r in kinds["two"]]), 0.70),
+        criterion("no effect: no_gap", _count([r.verdict == "no_gap" for r in kinds["none"]]), 0.95),
+        criterion(
+            "outside the catalogue: unexplained", _count([r.verdict == "unexplained" for r in kinds["outside"]]), 0.85
+        ),
+        criterion("parameters inside their 90 % interval", covered, 0.80, 0.97),
+        Criterion(
+            words="expected calibration error",
+            value=calibration_error,
+            low=0.0,
+            high=0.1,
+            count=sum(count for _, _, count in reliability.values()),
+        ),
+        middle("median shrink, the catalogue's form", shrinks[True], 0.9),
+        middle("median shrink, another form", shrinks[False], 0.7),
+        criterion("where: trials overlap by half or more", _count([o >= 0.5 for o in overlaps.values()]), 0.80),
+        Criterion(
+            words="longest diagnosis, s",
+            value=max(seconds) if seconds else None,
+            low=0.0,
+            high=_SLOWEST_S,
+            count=len(seconds),
+        ),
+    )
+    return Scores(
+        seed=seed,
+        versions=tuple(sorted({r.version for r in records if r.version is not None})),
+        datasets=len(records),
+        diagnosed=sum(r.diagnosis is not None for r in records),
+        confusion=_confusion(records),
+        by_strength={
+            _bin_name(low, high): _count(
+                [_named_first(r) for r in kinds["one"] if low <= r.answer.strength_sigma < high]
+            )
+            for low, high in STRENGTH_BINS
+        },
+        verdicts={kind: _tally(r.verdict for r in of_kind) for kind, of_kind in kinds.items()},
+        reliability=reliability,
+        calibration_error=calibration_error,
+        coverage_by_effect=coverage,
+        overlaps=overlaps,
+        regions=_regions(records),
+        seconds_mean=mean(seconds) if seconds else None,
+        seconds_longest=max(seconds) if seconds else None,
+        criteria=criteria,
+        rows=tuple(_row(r) for r in records),
+    )
+
+
+def _count(hits: Sequence[bool]) -> Share:
+    return Share(sum(hits), len(hits))
+
+
+def _tally(words: Any) -> dict[str, int]:
+    found: dict[str, int] = {}
+    for word in words:
+        found[word] = found.get(word, 0) + 1
+    return dict(sorted(found.items()))
+
+
+def _bin_name(low: float, high: float) -> str:
+    return f">={low:g}" if high == inf else f"{low:g}-{high:g}"
+
+
+def _named_first(record: Record) -> bool:
+    return record.named[:1] == record.truth[:1]
+
+
+def _is_tie(record: Record, tie: TieCheck) -> bool:
+    """Return whether the diagnosis says itself that it cannot tell, and simulation bears it out."""
+    if record.diagnosis is None or not record.named:
+        return False
+    ties = record.diagnosis["effects"][0].get("confounded_with", ())
+    return record.truth[0] in ties and tie(record) < TIE_SIGMA
+
+
+def _tie_sigma(folder: Path, record: Record) -> float:
+    assert record.diagnosis is not None
+    try:
+        truth = [effect_of(e.name, e.parameters) for e in record.answer.effects]
+        chosen = [
+            effect_of(e["name"], {key: p["estimate"] for key, p in e["parameters"].items()})
+            for e in record.diagnosis["effects"]
+        ]
+    except TumblersError:
+        return inf
+    return difference_sigma(folder, truth, chosen)
+
+
+def _confusion(records: Sequence[Record]) -> dict[str, dict[str, int]]:
+    table: dict[str, list[str]] = {}
+    for record in records:
+        if record.answer.kind == "two":
+            continue
+        truth = record.truth[0] if record.answer.kind == "one" else record.answer.kind
+        said = record.named[0] if record.named and record.verdict == "explained" else record.verdict
+        table.setdefault(truth, []).append(said)
+    return {truth: _tally(said) for truth, said in sorted(table.items())}
+
+
+def _calibration(records: Sequence[Record]) -> tuple[dict[str, tuple[float, float, int]], float | None]:
+    """Return the reliability of the best hypothesis's probability, where the catalogue holds the truth and it shows."""
+    stated: list[tuple[float, bool]] = []
+    for record in records:
+        seen = record.answer.kind == "none" or record.answer.strength_sigma >= 1.0
+        if record.diagnosis is None or record.answer.kind == "outside" or not seen:
+            continue
+        ranking = record.diagnosis.get("ranking") or []
+        if ranking:
+            stated.append((float(ranking[0]["probability"]), set(ranking[0]["effects"]) == set(record.truth)))
+    table: dict[str, tuple[float, float, int]] = {}
+    error = 0.0
+    for low, high in PROBABILITY_BINS:
+        inside = [(p, right) for p, right in stated if low <= p < high or (high == 1.0 and p == 1.0)]
+        if inside:
+            said, right = mean(p for p, _ in inside), mean(float(right) for _, right in inside)
+            table[f"{low:g}-{high:g}"] = (said, right, len(inside))
+            error += len(inside) / len(stated) * abs(said - right)
+    return table, error if stated else None
+
+
+def _coverage(records: Sequence[Record]) -> dict[str, Share]:
+    """Return how many parameters of rightly named effects, in the catalogue's form, are inside their interval."""
+    found: dict[str, list[bool]] = {}
+    for record in records:
+        if record.diagnosis is None or not record.same_form or record.answer.kind not in ("one", "two"):
+            continue
+        named = {effect["name"]: effect["parameters"] for effect in record.diagnosis["effects"]}
+        if set(named) != set(record.truth):
+            continue
+        for effect in record.answer.effects:
+            for key, interval in named[effect.name].items():
+                if key in effect.parameters:
+                    inside = _inside(key, float(effect.parameters[key]), interval)
+                    found.setdefault(effect.name, []).append(inside)
+    return {name: _count(hits) for name, hits in sorted(found.items())}
+
+
+def _inside(key: str, truth: float, interval: Mapping[str, float | None]) -> bool:
+    turns = (-360.0, 0.0, 360.0) if key == "theta2_deg" else (0.0,)
+    # An end that is no number is open.
+    low = -inf if interval["low"] is None else interval["low"]
+    high = inf if interval["high"] is None else interval["high"]
+    return any(low <= truth + turn <= high for turn in turns)
+
+
+def _shrink(record: Record) -> float | None:
+    if record.diagnosis is None:
+        return None
+    shrink = record.diagnosis["gap"].get("shrink")
+    return None if not shrink or shrink.get("estimate") is None else float(shrink["estimate"])
+
+
+def _overlap(record: Record) -> float | None:
+    """Return what both share of the trials pointed out or affected, where a part of the trials is affected."""
+    affected = set(record.answer.affected_trials)
+    trials = set(record.answer.strength_by_trial)
+    if record.diagnosis is None or not affected or affected == trials or record.answer.strength_sigma < _CLEAR:
+        return None
+    pointed = {entry["value"] for entry in record.diagnosis["where"] if entry["axis"] == "trial"}
+    return len(affected & pointed) / len(affected | pointed)
+
+
+def _regions(records: Sequence[Record]) -> dict[str, Share]:
+    found: dict[str, list[bool]] = {}
+    for record in records:
+        if record.diagnosis is None or record.answer.strength_sigma < _CLEAR:
+            continue
+        for axis, (low, high) in record.answer.where.items():
+            said = [
+                (entry["low"], entry["high"])
+                for entry in record.diagnosis["where"]
+                if entry["axis"] == axis and entry.get("low") is not None and entry.get("high") is not None
+            ]
+            found.setdefault(axis, []).append(any(_shared((low, high), region) >= 0.5 for region in said))
+    return {axis: _count(hits) for axis, hits in sorted(found.items())}
+
+
+def _shared(first: tuple[float, float], second: tuple[float, float]) -> float:
+    """Return the share of the shorter interval that both cover."""
+    both = min(first[1], second[1]) - max(first[0], second[0])
+    shorter = min(first[1] - first[0], second[1] - second[0])
+    return max(both, 0.0) / shorter if shorter > 0.0 else float(both >= 0.0)
+
+
+def _row(record: Record) -> dict[str, Any]:
+    return {
+        "dataset": record.dataset,
+        "kind": record.answer.kind,
+        "truth": [f"{e.name} ({e.form})" if e.form != "catalogue" else e.name for e in record.answer.effects],
+        "strength_sigma": round(record.answer.strength_sigma, 2),
+        "verdict": record.verdict,
+        "named": list(record.named),
+        "shrink": _shrink(record),
+        "seconds": None if record.seconds is None else round(record.seconds, 1),
+    }

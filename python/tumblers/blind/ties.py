@@ -1,0 +1,106 @@
+"""Whether two explanations foretell the same observations: shown by simulation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import inf
+from os import PathLike
+
+import numpy as np
+
+from ..dataset import Dataset, LabTrial, load
+from ..effects.base import Effect
+from ..effects.catalogue import get
+from ..errors import TumblersError
+from .lab import Lab, Plan
+from .law import EffectLaw
+from .strength import strength
+from .world import Scene, watch
+
+__all__ = ["difference_sigma", "effect_of"]
+
+_STEP_S = 1.4e-4
+_FRAMES_PER_SECOND = 60.0
+
+
+def effect_of(name: str, parameters: Mapping[str, float]) -> Effect:
+    """Return the effect of a name and of parameters by their keys.
+
+    Parameters
+    ----------
+    name
+        Of the catalogue.
+    parameters
+        A key that is left out is neutral.
+
+    Raises
+    ------
+    InputError
+        A name that is not in the catalogue, or a number that is refused.
+    """
+    kind = get(name)
+    return kind.from_vector([parameters.get(p.key, p.neutral) for p in kind.parameters])
+
+
+def difference_sigma(
+    dataset: Dataset | str | PathLike[str], first: Sequence[Effect], second: Sequence[Effect]
+) -> float:
+    """Return by how many standard deviations of the noise two explanations differ on a dataset's trials.
+
+    Parameters
+    ----------
+    dataset
+        The dataset, or its folder.
+    first, second
+        The effects of each explanation.
+
+    Returns
+    -------
+    float
+        Root mean square after the nuisances are taken out; infinite where one of them cannot be simulated.
+    """
+    data = dataset if isinstance(dataset, Dataset) else load(dataset)
+    lab = _lab(data)
+    try:
+        return strength(lab, _scenes(lab, first), _scenes(lab, second)).sigma
+    except (ArithmeticError, TumblersError):
+        return inf
+
+
+def _scenes(lab: Lab, effects: Sequence[Effect]) -> list[Scene]:
+    laws = [EffectLaw(effect) for effect in effects]
+    return [watch(lab.scenario(plan), laws, lab.frames(plan), solver="reduced") for plan in lab.plans]
+
+
+def _lab(data: Dataset) -> Lab:
+    tracks = [trial.track for trial in data.trials if trial.track is not None and trial.track.time_s.size > 1]
+    farthest = [
+        np.nanmax(np.abs(t.channels[n]), initial=0.0) for t in tracks for n in ("x_m", "y_m") if n in t.channels
+    ]
+    return Lab(
+        robot=data.robot,
+        substrate=data.substrate,
+        sensor=data.sensor,
+        channels=tuple(tracks[0].channels) if tracks else (),
+        frames_per_second=1.0 / tracks[0].frame_interval_s if tracks else _FRAMES_PER_SECOND,
+        view_m=max(map(float, farthest), default=inf),
+        step_s=_STEP_S,
+        plans=tuple(_plan(trial) for trial in data.trials),
+    )
+
+
+def _plan(trial: LabTrial) -> Plan:
+    outcome = trial.outcome
+    kind = ""
+    if outcome is not None:
+        kind = (
+            "tilt" if outcome.tilt_deg is not None else "speed" if outcome.mean_speed_m_per_s is not None else "climbs"
+        )
+    return Plan(
+        id=trial.id,
+        field=trial.field,
+        duration_s=trial.duration_s,
+        incline_deg=trial.incline_deg,
+        tracked=trial.track is not None,
+        outcome=kind,
+    )

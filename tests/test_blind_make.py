@@ -1,0 +1,152 @@
+from __future__ import annotations
+
+import json
+import multiprocessing
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from tumblers import InputError, dataset
+from tumblers.blind.answer import seal
+from tumblers.blind.commands import blind_app
+from tumblers.blind.layout import draw_lab, world_scenario
+from tumblers.blind.make import make
+from tumblers.blind.records import read_records
+from tumblers.blind.schedule import task
+from tumblers.blind.strength import strength
+from tumblers.blind.world import watch
+from tumblers.effects.catalogue import CATALOGUE
+
+# Worlds without an effect are quick to draw.
+SEED = next(seed for seed in range(1000) if [task(seed, i).kind for i in range(2)] == ["none", "none"])
+
+
+def contents(directory: Path) -> dict[str, bytes]:
+    return {str(p.relative_to(directory)): p.read_bytes() for p in sorted(directory.rglob("*")) if p.is_file()}
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    directory = tmp_path_factory.mktemp("blind") / "two"
+    make(directory, seed=SEED, count=2, jobs=2)
+    return directory
+
+
+def test_the_files_do_not_depend_on_the_number_of_processes(made: Path, tmp_path: Path) -> None:
+    make(tmp_path / "again", seed=SEED, count=2, jobs=1)
+    assert contents(tmp_path / "again") == contents(made)
+
+
+def test_a_set_loads_and_keeps_its_answers_apart(made: Path) -> None:
+    assert sorted(p.name for p in made.iterdir()) == ["answers.json", "dataset-000", "dataset-001"]
+    for folder in sorted(made.glob("dataset-*")):
+        data = dataset.load(folder)
+        assert 6 <= len(data.trials) <= 14
+        assert "none" not in (folder / "dataset.toml").read_text()
+        for trial in data.trials:
+            if trial.track is not None:
+                assert 30 <= trial.track.time_s.size <= 200
+
+
+def test_seals_are_whole_and_a_changed_answer_is_named(made: Path, tmp_path: Path) -> None:
+    seed, records = read_records(made, made / "answers.json")
+    assert seed == SEED
+    assert [r.answer.kind for r in records] == ["none", "none"]
+    assert all(r.diagnosis is None for r in records)
+    table = json.loads((made / "answers.json").read_text())
+    table["answers"][1]["answer"]["strength_sigma"] = 1.0
+    changed = tmp_path / "answers.json"
+    changed.write_text(json.dumps(table))
+    with pytest.raises(InputError, match=r"dataset-001: found an answer that is not the sealed one"):
+        read_records(made, changed)
+
+
+def test_a_seal_does_not_depend_on_the_order_of_keys() -> None:
+    assert seal("salt", {"a": 1.5, "b": [1]}) == seal("salt", {"b": [1], "a": 1.5})
+    assert seal("salt", {"a": 1.5}) != seal("other", {"a": 1.5})
+
+
+@pytest.mark.parametrize(
+    ("changes", "key"),
+    [
+        ({"seed": -1}, "seed"),
+        ({"seed": True}, "seed"),
+        ({"count": 0}, "count"),
+        ({"jobs": 0}, "jobs"),
+    ],
+)
+def test_refused_numbers_write_nothing(changes: dict[str, int], key: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=f"^{key}: found"):
+        make(tmp_path / "new", **{"seed": 1, "count": 1, **changes})
+    assert not (tmp_path / "new").exists()
+
+
+def test_a_folder_that_is_taken_is_refused(made: Path, tmp_path: Path) -> None:
+    before = contents(made)
+    with pytest.raises(InputError, match="datasets or answers"):
+        make(made, seed=1, count=1)
+    assert contents(made) == before
+    (tmp_path / "file").write_text("")
+    with pytest.raises(InputError, match="expected a folder"):
+        make(tmp_path / "file", seed=1, count=1)
+
+
+def test_an_interrupted_make_leaves_nothing(tmp_path: Path) -> None:
+    def stop(done: int) -> None:
+        raise KeyboardInterrupt
+
+    (tmp_path / "there").mkdir()
+    for name in ("there", "new"):
+        with pytest.raises(KeyboardInterrupt):
+            make(tmp_path / name, seed=SEED, count=2, jobs=1, progress=stop)
+    assert multiprocessing.active_children() == []
+    assert [p.name for p in tmp_path.iterdir()] == ["there"]
+    assert not any((tmp_path / "there").iterdir())
+
+
+def test_every_effect_has_its_turn_in_forty_datasets() -> None:
+    for seed in range(5):
+        tasks = [task(seed, i) for i in range(40)]
+        assert {t.names[0] for t in tasks if t.kind == "one"} == set(CATALOGUE)
+        assert Counter(t.kind for t in tasks) == {"none": 8, "one": 20, "two": 6, "outside": 6}
+        assert all(len(set(t.names)) == 2 for t in tasks if t.kind == "two")
+
+
+def test_strength_takes_out_what_the_sensor_may_be_off() -> None:
+    lab, jitter = draw_lab(np.random.default_rng(2))
+    frames = [lab.frames(plan) for plan in lab.plans]
+    tracked = [i for i, plan in enumerate(lab.plans) if plan.tracked]
+    alone = lab.with_plans(tuple(lab.plans[i] for i in tracked))
+    scenarios = [world_scenario(lab, lab.plans[i], jitter) for i in tracked]
+    plain = [watch(s, (), frames[i], solver="reduced") for s, i in zip(scenarios, tracked, strict=True)]
+    assert strength(alone, plain, plain).sigma == 0.0
+    shifted = [scene.__class__(scene.time_s, _moved(scene.poses, 20e-6), *_rest(scene)) for scene in plain]
+    assert strength(alone, shifted, plain).sigma < 1e-6
+    far = [scene.__class__(scene.time_s, _moved(scene.poses, 80e-6), *_rest(scene)) for scene in plain]
+    # At most 30 of 80 µm are left once 50 µm are taken out; the camera's heading takes some of them.
+    channels = len([c for c in lab.channels if not c.startswith("q")]) + 3 * ("qw" in lab.channels)
+    most = 30e-6 / lab.sensor.position_noise_m / np.sqrt(channels)
+    assert 0.2 * most < strength(alone, far, plain).sigma < 1.1 * most
+
+
+def _moved(poses, by_m):  # type: ignore[no-untyped-def]
+    return type(poses)(poses.position_m + np.array([by_m, 0.0, 0.0]), poses.orientation)
+
+
+def _rest(scene):  # type: ignore[no-untyped-def]
+    return scene.before, scene.after, scene.step_s, scene.converged
+
+
+def test_the_command_refuses_in_one_line(made: Path) -> None:
+    done = CliRunner().invoke(blind_app, ["make", "--seed", "1", "--count", "0", "--out", str(made / "new")])
+    assert isinstance(done.exception, InputError)
+    assert str(done.exception) == "--count: found 0, expected a whole number of at least 1"
+    done = CliRunner().invoke(blind_app, ["run", str(made / "none")])
+    assert isinstance(done.exception, InputError)
+    done = CliRunner().invoke(blind_app, ["run", str(made), "--only", "7"])
+    assert str(done.exception).startswith("--only: found 7, expected numbers of datasets in")
+    done = CliRunner().invoke(blind_app, ["score", str(made), "--answers", str(made / "dataset-000" / "seal.json")])
+    assert "expected 'tumblers-answers/1'" in str(done.exception)

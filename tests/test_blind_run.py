@@ -1,0 +1,86 @@
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from types import ModuleType, SimpleNamespace
+
+import pytest
+
+import tumblers
+from tumblers import InputError
+from tumblers.blind.run import _diagnose, _is_done, run
+from tumblers.dataset import Dataset, LabTrial, Outcome, Sensor
+from tumblers.field import RotatingField
+from tumblers.presets import ROBOTS, SUBSTRATES
+
+
+def write(folder: Path) -> Path:
+    field = RotatingField(strength_T=0.010, frequency_Hz=3.0)
+    trial = LabTrial(id="f3", field=field, duration_s=0.5, outcome=Outcome(climbs=True))
+    Dataset(
+        robot=ROBOTS["spiked_pdms"].value,
+        substrate=SUBSTRATES["aluminium_pdms"].value,
+        sensor=Sensor(position_noise_m=3e-6, angle_noise_deg=1.0),
+        trials=(trial,),
+    ).save(folder)
+    return folder
+
+
+@pytest.fixture
+def diagnose(monkeypatch: pytest.MonkeyPatch) -> list[object]:
+    """A diagnosis that takes no time; the list holds what it returns or raises."""
+    says: list[object] = ['{"format": "tumblers-diagnosis/1"}']
+
+    def stand_in(dataset: Dataset, *, jobs: int) -> SimpleNamespace:
+        assert jobs == 1
+        if isinstance(says[0], Exception):
+            raise says[0]
+        return SimpleNamespace(to_json=lambda: says[0])
+
+    module = ModuleType("tumblers.diagnosis")
+    module.diagnose = stand_in  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "tumblers.diagnosis", module)
+    return says
+
+
+def test_a_diagnosis_and_its_record_are_written(diagnose: list[object], tmp_path: Path) -> None:
+    folder = write(tmp_path / "dataset-000")
+    # The answers lie beside the datasets, and must not be needed.
+    assert not _is_done(folder)
+    assert _diagnose(folder)
+    assert (folder / "diagnosis.json").read_text() == diagnose[0]
+    record = json.loads((folder / "run.json").read_text())
+    assert (record["version"], record["error"]) == (tumblers.__version__, None)
+    assert record["seconds"] >= 0.0
+    assert _is_done(folder)
+
+
+def test_another_version_or_a_failure_is_not_done(diagnose: list[object], tmp_path: Path) -> None:
+    folder = write(tmp_path / "dataset-000")
+    _diagnose(folder)
+    record = json.loads((folder / "run.json").read_text())
+    (folder / "run.json").write_text(json.dumps({**record, "version": "0"}))
+    assert not _is_done(folder)
+    diagnose[0] = InputError("trial", "nothing", "something")
+    assert not _diagnose(folder)
+    assert not (folder / "diagnosis.json").exists()
+    assert (
+        json.loads((folder / "run.json").read_text())["error"] == "InputError: trial: found nothing, expected something"
+    )
+    assert not _is_done(folder)
+    (folder / "run.json").write_text("{")
+    assert not _is_done(folder)
+
+
+def test_what_is_done_stays_done(diagnose: list[object], tmp_path: Path) -> None:
+    _diagnose(write(tmp_path / "dataset-000"))
+    assert run(tmp_path, jobs=1) == (0, 1, 0)
+
+
+def test_a_folder_without_datasets_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no datasets"):
+        run(tmp_path)
+    write(tmp_path / "dataset-000")
+    with pytest.raises(InputError, match=r"^only: found 3"):
+        run(tmp_path, only=[3])

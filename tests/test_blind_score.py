@@ -1,0 +1,240 @@
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tumblers import InputError
+from tumblers.blind.answer import Answer, TrueCause, seal
+from tumblers.blind.page import page_of, print_scores
+from tumblers.blind.records import Record, read_records
+from tumblers.blind.score import Scores, score_records
+from tumblers.blind.ties import difference_sigma, effect_of
+from tumblers.dataset import Dataset, LabTrial, Outcome, Sensor
+from tumblers.field import RotatingField
+from tumblers.model import Model
+from tumblers.presets import ROBOTS, SUBSTRATES
+
+
+def answer(kind: str, *effects: tuple[str, str, dict[str, float]], sigma: float = 5.0, **changes: Any) -> Answer:
+    causes = tuple(TrueCause(name=n, form=f, parameters=p, strength_sigma=sigma) for n, f, p in effects)
+    trials = {"a": sigma, "b": sigma, "c": 0.1}
+    affected = tuple(name for name, strength in trials.items() if strength >= 1.0)
+    table: dict[str, Any] = {
+        "kind": kind,
+        "effects": causes,
+        "strength_sigma": sigma if causes else 0.0,
+        "strength_by_trial": trials,
+        "affected_trials": affected,
+        "where": {},
+        "nuisances": {},
+        "jitter": {},
+        "jitter_sigma": 0.3,
+    }
+    return Answer(**(table | changes))
+
+
+def said(
+    verdict: str,
+    *effects: tuple[str, dict[str, tuple[float, float, float]]],
+    probability: float = 0.9,
+    shrink: float | None = 0.95,
+    ties: tuple[str, ...] = (),
+    where: tuple[dict[str, Any], ...] = (),
+) -> dict[str, Any]:
+    return {
+        "format": "tumblers-diagnosis/1",
+        "verdict": verdict,
+        "effects": [
+            {
+                "name": name,
+                "probability": probability,
+                "parameters": {k: {"estimate": e, "low": lo, "high": hi} for k, (e, lo, hi) in parameters.items()},
+                "confounded_with": list(ties),
+            }
+            for name, parameters in effects
+        ],
+        "ranking": [{"effects": [name for name, _ in effects], "probability": probability}],
+        "gap": {"shrink": None if shrink is None else {"estimate": shrink, "low": 0.0, "high": 1.0}},
+        "where": list(where),
+        "next_trials": [],
+    }
+
+
+FRICTION = ("friction_coefficient", "catalogue", {"factor": 0.8})
+TILT = ("substrate_tilt", "curved", {"slope_x_deg": 2.0, "slope_y_deg": 0.0})
+TWISTED = ("magnetization_misalignment", "catalogue", {"theta1_deg": 5.0, "theta2_deg": 179.0})
+
+
+def record(number: int, truth: Answer, diagnosis: dict[str, Any] | None, seconds: float = 10.0) -> Record:
+    name = f"dataset-{number:03d}"
+    return Record(dataset=name, answer=truth, diagnosis=diagnosis, seconds=seconds, version="1.0")
+
+
+def friction(low: float, high: float) -> tuple[str, dict[str, tuple[float, float, float]]]:
+    return "friction_coefficient", {"factor": (0.8, low, high)}
+
+
+def scored(tie_sigma: float = 0.5) -> Scores:
+    trial_a, trial_c = ({"axis": "trial", "value": value, "share_of_gap": 0.5} for value in "ac")
+    records = [
+        # Right, its parameter inside, trials a of a and b pointed out: an overlap of a half.
+        record(0, answer("one", FRICTION), said("explained", friction(0.7, 0.9), where=(trial_a,))),
+        # Right, its parameter outside, trials a and c pointed out where a and b are affected: a third.
+        record(1, answer("one", FRICTION),
+               said("explained", friction(0.81, 0.9), shrink=0.9, where=(trial_a, trial_c))),
+        # Wrong, but in its own tie group.
+        record(2, answer("one", FRICTION, sigma=20.0),
+               said("explained", ("viscous_drag", {}), ties=("friction_coefficient",))),
+        # Wrong, and below the strength that counts.
+        record(3, answer("one", FRICTION, sigma=0.7), said("no_gap", probability=0.5)),
+        # Another form; its interval does not count.
+        record(4, answer("one", TILT),
+               said("explained", ("substrate_tilt", {"slope_x_deg": (1.0, 0.9, 1.1)}), shrink=0.75)),
+        # Both named, in another order; 179 degrees are inside from -185 to -178.
+        record(
+            5,
+            answer("two", FRICTION, TWISTED),
+            said(
+                "explained",
+                ("magnetization_misalignment", {"theta1_deg": (5.0, 4.0, 6.0), "theta2_deg": (-181.0, -185.0, -178.0)}),
+                friction(0.7, 0.9),
+            ),
+        ),
+        record(6, answer("two", FRICTION, TILT), said("explained", friction(0.7, 0.9), probability=0.3)),
+        record(7, answer("none"), said("no_gap", shrink=None)),
+        record(8, answer("none"), said("explained", friction(0.7, 0.9))),
+        record(9, answer("outside", ("gusts", "outside", {"size": 0.5})), said("unexplained", friction(0.7, 0.9))),
+        record(10, answer("outside", ("phase_jump", "outside", {}), where={"time_s": (0.4, 1.0)}),
+               said("unexplained", where=({"axis": "time_s", "low": 0.5, "high": 0.9, "share_of_gap": 1.0},))),
+        record(11, answer("outside", ("gusts", "outside", {})), None, seconds=200.0),
+    ]  # fmt: skip
+    return score_records(records, 7, lambda _: tie_sigma)
+
+
+def value(scores: Scores, words: str) -> float | None:
+    return next(c.value for c in scores.criteria if c.words.startswith(words))
+
+
+def test_scores_are_those_computed_by_hand() -> None:
+    scores = scored()
+    # Records 0, 1, 2 and 4 count: 0, 1 and 4 are right.
+    assert value(scores, "one effect of 3 sigma or more: named first") == 0.75
+    assert value(scores, "one effect of 3 sigma or more: named first or truly tied") == 1.0
+    assert value(scores, "two effects") == 0.5
+    assert value(scores, "no effect") == 0.5
+    assert value(scores, "outside") == pytest.approx(2 / 3)
+    # 0: inside; 1: outside; 5: three inside.
+    assert value(scores, "parameters") == pytest.approx(4 / 5)
+    assert value(scores, "median shrink, the catalogue") == 0.95
+    assert value(scores, "median shrink, another") == 0.75
+    # 0: 1/2, 1: 1/3; nothing pointed out in 2, 4, 5, 6, 9 and 10.
+    assert scores.overlaps["dataset-000"] == 0.5
+    assert scores.overlaps["dataset-001"] == pytest.approx(1 / 3)
+    assert value(scores, "where") == pytest.approx(1 / len(scores.overlaps))
+    assert scores.regions["time_s"].share == 1.0
+    assert value(scores, "longest") == 200.0
+    assert (scores.datasets, scores.diagnosed) == (12, 11)
+    assert scores.confusion["friction_coefficient"] == {"friction_coefficient": 2, "no_gap": 1, "viscous_drag": 1}
+    assert scores.confusion["outside"] == {"failed": 1, "unexplained": 2}
+    assert {name: (s.hits, s.count) for name, s in scores.by_strength.items()} == {
+        "0-1": (0, 1),
+        "1-3": (0, 0),
+        "3-10": (3, 3),
+        ">=10": (0, 1),
+    }
+
+
+def test_calibration_is_that_computed_by_hand() -> None:
+    scores = scored()
+    # At 0.9: records 0, 1, 2, 4, 5, 7 and 8, of which 0, 1, 4, 5 and 7 are right; at 0.3: record 6, wrong.
+    assert scores.reliability == {
+        "0.2-0.4": (0.3, 0.0, 1),
+        "0.8-1": (pytest.approx(0.9), pytest.approx(5 / 7), 7),
+    }
+    assert scores.calibration_error == pytest.approx((0.3 + 7 * (0.9 - 5 / 7)) / 8)
+
+
+def test_a_tie_that_simulation_does_not_bear_out_does_not_count() -> None:
+    words = "one effect of 3 sigma or more: named first or truly tied"
+    assert value(scored(tie_sigma=1.5), words) == 0.75
+
+
+def test_the_page_and_the_tables_show_every_criterion(capsys: pytest.CaptureFixture[str]) -> None:
+    scores = scored()
+    page = page_of(scores)
+    print_scores(scores)
+    assert capsys.readouterr().out
+    for criterion in scores.criteria:
+        assert f"| {criterion.words} |" in page
+    assert "drawn from seed 7, 11 diagnosed by version 1.0" in page
+    assert page.count("| **no** |") == sum(c.met is False for c in scores.criteria)
+    table = json.loads(scores.to_json())
+    assert table["format"] == "tumblers-blind-scores/1"
+    assert len(table["rows"]) == 12
+
+
+def test_scores_of_nothing_are_not_numbers() -> None:
+    scores = score_records([record(0, answer("none"), None)], 1, lambda _: 0.0)
+    assert value(scores, "median shrink, another") is None
+    assert "nothing to measure" in page_of(scores)
+
+
+def write(directory: Path, truth: Answer, salt: str = "salt") -> Path:
+    folder = directory / "dataset-000"
+    folder.mkdir()
+    table = truth.table()
+    (folder / "seal.json").write_text(json.dumps({"format": "tumblers-seal/1", "sha256": seal(salt, table)}))
+    answers = directory / "answers.json"
+    entries = [{"dataset": folder.name, "salt": salt, "answer": table}]
+    answers.write_text(json.dumps({"format": "tumblers-answers/1", "seed": 3, "answers": entries}))
+    return answers
+
+
+def test_records_come_back_as_they_were_written(tmp_path: Path) -> None:
+    truth = answer("one", FRICTION, where={"time_s": (0.4, 1.0)})
+    seed, records = read_records(tmp_path, write(tmp_path, truth))
+    assert (seed, records[0].answer) == (3, truth)
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "found"),
+    [
+        ("answers.json", "{", "malformed JSON"),
+        ("answers.json", '{"format": "tumblers-answers/1", "answers": 3}', "no list of datasets"),
+        ("answers.json", '{"format": "tumblers-answers/1", "seed": 1, "answers": []}', "no answer for dataset-000"),
+        ("answers.json", "[]", "expected 'tumblers-answers/1'"),
+        ("dataset-000/seal.json", '{"format": "tumblers-seal/1"}', "not the sealed one"),
+        ("dataset-000/diagnosis.json", '{"format": "other"}', "expected 'tumblers-diagnosis/1'"),
+    ],
+)
+def test_files_are_refused_in_one_line(file: str, text: str, found: str, tmp_path: Path) -> None:
+    answers = write(tmp_path, answer("none"))
+    (tmp_path / file).write_text(text)
+    with pytest.raises(InputError, match=found) as refused:
+        read_records(tmp_path, answers)
+    assert "\n" not in str(refused.value)
+    assert refused.value.file is not None
+
+
+def test_explanations_that_foretell_the_same_do_not_differ() -> None:
+    trial = LabTrial(
+        id="f3",
+        field=RotatingField(strength_T=0.010, frequency_Hz=3.0),
+        duration_s=0.5,
+        outcome=Outcome(mean_speed_m_per_s=6e-3, sigma_m_per_s=6e-5),
+    )
+    data = Dataset(
+        robot=ROBOTS["spiked_pdms"].value,
+        substrate=SUBSTRATES["aluminium_pdms"].value,
+        sensor=Sensor(position_noise_m=3e-6, angle_noise_deg=1.0),
+        trials=(trial,),
+        model=Model(magnetic_torque="midpoint"),
+    )
+    longer = [effect_of("size_error", {"length_factor": 1.1, "height_factor": 1.1})]
+    assert difference_sigma(data, longer, longer) == 0.0
+    assert difference_sigma(data, longer, []) > 3.0
+    # A force that pulls it off the substrate cannot be compared.
+    assert difference_sigma(data, [effect_of("electrostatic_force", {"added_force_N": -1.0})], []) == float("inf")

@@ -1,0 +1,137 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tumblers import preset_scenario, simulate
+from tumblers.blind.cause import CatalogueCause, OutsideCause
+from tumblers.blind.forms import FORMS, scaled
+from tumblers.blind.law import EffectLaw, Law
+from tumblers.blind.outside import OUTSIDE
+from tumblers.blind.view import channels_of, turn_between
+from tumblers.blind.world import Scene, watch
+from tumblers.effects.base import Effect
+from tumblers.effects.catalogue import CATALOGUE
+from tumblers.field import RotatingField, StaticField
+from tumblers.model import Model
+from tumblers.scenario import Scenario
+
+TIMES = np.arange(0.0, 0.4, 1.0 / 60.0)
+STEP_S = 1.4e-4
+MODEL = Model(magnetic_torque="midpoint")
+
+
+def flat(frequency_Hz: float = 5.0) -> Scenario:
+    scenario = preset_scenario("cuboid_on_paper", model=MODEL, step_s=STEP_S)
+    return replace(scenario, field=RotatingField(strength_T=0.010, frequency_Hz=frequency_Hz))
+
+
+def slope() -> Scenario:
+    # Steep enough that the robot slips and stands on its faces.
+    scenario = flat(1.0)
+    return replace(scenario, run=replace(scenario.run, incline_deg=48.0))
+
+
+def hold() -> Scenario:
+    # It lies on its face, where adhesion acts, and slides slowly.
+    scenario = flat()
+    still = StaticField(strength_T=0.0, direction=(0.0, 1.0, 0.0))
+    return replace(scenario, field=still, run=replace(scenario.run, incline_deg=75.0))
+
+
+def gap_m(first: Scene, second: Scene) -> float:
+    return float(np.max(np.abs(first.poses.position_m - second.poses.position_m)))
+
+
+@pytest.mark.parametrize("robot", ["cuboid", "spiked_pdms"])
+@pytest.mark.parametrize("solver", ["reduced", "general"])
+def test_a_world_without_causes_is_the_model(robot: str, solver: str) -> None:
+    scenario = preset_scenario(robot=robot, substrate="paper", drive="20mT_10Hz", model=MODEL, step_s=STEP_S)
+    scene = watch(scenario, (), TIMES, solver=solver)  # type: ignore[arg-type]
+    run = simulate(scenario)
+    for i in range(3):
+        expected = np.interp(TIMES, run["time"].values, run["position_m"].values[:, i])
+        # The unreduced problem is solved to 1e-9 of the step's own scale, which thousands of steps add up.
+        np.testing.assert_allclose(scene.poses.position_m[:, i], expected, rtol=0.0, atol=1e-8)
+    np.testing.assert_allclose(np.linalg.norm(scene.poses.orientation, axis=1), 1.0, atol=1e-12)
+
+
+def test_exchanging_equal_trials_changes_nothing() -> None:
+    class Nothing(Law):
+        every = 8
+
+    assert gap_m(watch(flat(), [Nothing()], TIMES, solver="reduced"), watch(flat(), (), TIMES, solver="reduced")) < 1e-9
+
+
+def test_the_tracked_point_is_the_body_s_centre() -> None:
+    scenario = flat()
+    offset = (0.0, 3e-5, 2e-5)
+    moved = replace(scenario, robot=replace(scenario.robot, center_of_mass_m=offset))
+    start = watch(moved, (), TIMES, solver="reduced").poses.position_m[0]
+    # A run starts with the mass centre above the origin.
+    np.testing.assert_allclose(start, [0.0, -3e-5, 5e-5], atol=1e-9)
+
+
+def cause(name: str, other_form: bool, seed: int = 3) -> CatalogueCause:
+    return CatalogueCause(name, other_form, [flat(), slope()], np.random.default_rng(seed))
+
+
+@pytest.mark.parametrize("name", FORMS)
+def test_each_other_form_changes_the_run_in_its_own_way(name: str) -> None:
+    changed = other = 0.0
+    for seed in (3, 4, 5):
+        drawn = cause(name, True, seed)
+        same = EffectLaw(drawn.effect)
+        for scenario in (flat(), flat(10.0), slope(), hold()):
+            plain = watch(scenario, (), TIMES, solver="reduced")
+            seen = watch(scenario, [drawn.law(1.0)], TIMES, solver="reduced")
+            changed = max(changed, gap_m(plain, seen))
+            other = max(other, gap_m(watch(scenario, [same], TIMES, solver="reduced"), seen))
+    assert drawn.form != "catalogue"
+    assert changed > 1e-6
+    assert other > 1e-7
+
+
+@pytest.mark.parametrize("name", OUTSIDE)
+def test_each_cause_outside_the_catalogue_changes_the_run(name: str) -> None:
+    scenario = flat()
+    outside = OutsideCause(name, scenario.robot, np.random.default_rng(7))
+    times = np.arange(0.0, 0.6, 1.0 / 60.0)
+    plain = watch(scenario, (), times, solver="reduced")
+    assert gap_m(plain, watch(scenario, [outside.law(1.0)], times, solver="reduced")) > 3e-6
+    assert outside.name not in CATALOGUE
+
+
+@pytest.mark.parametrize("name", ["broken_spike", "dust_speck"])
+@pytest.mark.parametrize("robot", ["cuboid", "spiked_pdms", "spiked_ends_pdms"])
+def test_a_hull_with_next_to_nothing_cut_or_added_is_the_body(name: str, robot: str) -> None:
+    scenario = preset_scenario(robot=robot, substrate="paper", drive="20mT_1Hz", model=MODEL, step_s=STEP_S)
+    law = OutsideCause(name, scenario.robot, np.random.default_rng(1)).law(1e-4)
+    settled = law.settle(scenario, 0)
+    size = scenario.robot.body().size_m
+    assert settled.robot.body().size_m == pytest.approx(size, rel=1e-2)
+    assert settled.robot.total_mass_kg == scenario.robot.total_mass_kg
+    np.testing.assert_allclose(settled.robot.magnetic_moment_A_m2, scenario.robot.magnetic_moment_A_m2)
+
+
+@pytest.mark.parametrize("name", CATALOGUE)
+def test_no_share_of_an_effect_is_neutral_and_all_of_it_is_the_effect(name: str) -> None:
+    effect: Effect = cause(name, False).effect
+    assert scaled(effect, 0.0).is_neutral()
+    np.testing.assert_allclose(scaled(effect, 1.0).vector(), effect.vector(), rtol=1e-12)
+    assert not scaled(effect, 0.5).is_neutral()
+
+
+def test_tilt_and_heading_follow_the_format() -> None:
+    half = np.sqrt(0.5)
+    poses = watch(flat(), (), TIMES, solver="reduced").poses
+    # Up by 90 degrees about x; towards -x by 90 degrees about z.
+    orientation = np.array([[half, half, 0.0, 0.0], [half, 0.0, 0.0, half]])
+    channels = channels_of(type(poses)(np.zeros((2, 3)), orientation))
+    np.testing.assert_allclose(channels["tilt_deg"], [90.0, 0.0], atol=1e-6)
+    assert np.isnan(channels["heading_deg"][0])
+    assert channels["heading_deg"][1] == pytest.approx(90.0)
+    turn = turn_between(np.array([[1.0, 0.0, 0.0, 0.0]]), orientation[1:])
+    np.testing.assert_allclose(turn, [[0.0, 0.0, 90.0]], atol=1e-9)
