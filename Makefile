@@ -9,7 +9,7 @@ SOURCES := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Carg
 # One interpreter for every cargo call, or pyo3 would be built again for each other one that it finds.
 export PYO3_PYTHON := $(abspath $(BIN)/python)
 
-.PHONY: sweep test lint rust-test python-test bench clean
+.PHONY: sweep test lint rust-test python-test dozen bench clean
 
 sweep: $(VENV)/installed
 	$(BIN)/tumblers sweep --robot spiked --out sweep-spiked.nc --plot sweep-spiked.png
@@ -29,7 +29,11 @@ rust-test:
 	cargo test --locked
 
 python-test: $(VENV)/installed $(VENV)/developing
-	$(BIN)/pytest -n auto
+	$(BIN)/pytest -n auto --ignore=tests/test_blind_dozen.py
+
+# Sealed datasets, made and diagnosed: minutes, and beside `make test` for that.
+dozen: $(VENV)/installed $(VENV)/developing
+	$(BIN)/pytest tests/test_blind_dozen.py
 
 bench:
 	cargo bench -p tumblers-benches --locked

@@ -5,6 +5,8 @@ Examples
 >>> import tumblers
 >>> run = tumblers.simulate(tumblers.preset_scenario("spiked"))
 >>> tumblers.save_netcdf(run, "run.nc")
+>>> tumblers.diagnose(tumblers.dataset.load("examples/aluminium_30deg")).verdict
+'explained'
 """
 
 from __future__ import annotations
@@ -30,10 +32,11 @@ if not TYPE_CHECKING:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
         exports = import_module(".exports", __name__)
         names = ["__all__", *exports.__all__]
-        globals().update((public, getattr(exports, public)) for public in names)
         if name not in names:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-        return globals()[name]
+        ready = vars(exports)
+        globals().update((public, ready[public]) for public in names if public in ready)
+        return globals().setdefault(name, getattr(exports, name))
 
     def __dir__() -> list[str]:
         return sorted({*globals(), *import_module(".exports", __name__).__all__})

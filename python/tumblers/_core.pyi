@@ -223,8 +223,8 @@ def rollouts(
     threads: int = 0,
     on_progress: Callable[[int], None] | None = None,
 ) -> list[_Rollout]:
-    """Run trials in parallel (0: all threads) and return their poses as seen, every `every[i]`-th step of trial i, to the
-    last that is finite."""
+    """Run trials in parallel (0: all threads) and return their poses as seen: of trial i every `every[i]`-th step, to
+    the last that is finite."""
 
 @final
 class Walk:

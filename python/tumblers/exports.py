@@ -1,7 +1,10 @@
 """The package's public names, imported the first time one of them is asked for."""
 
-from . import blind, dataset, effects
-from .diagnosis.result import Diagnosis
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from . import dataset, effects
+from .camera import Camera
 from .errors import InputError, SimulationError, TumblersError
 from .field import Field, RotatingField, StaticField, TableField
 from .grid import PAPER_DRAFTS_DEG, PAPER_MAGNETIZATION_DEG
@@ -9,14 +12,21 @@ from .initial import Initial
 from .model import Model
 from .netcdf import save_netcdf
 from .presets import DRIVES, EXPERIMENTS, ROBOTS, SUBSTRATES, drive, preset_scenario
+from .relief import Relief
 from .robot import Robot
 from .run import Run
 from .scenario import Scenario
 from .shape import Cuboid, Curved, Ellipsoid, Hull, Shape, Spiked, SpikedEnds
 from .simulate import simulate
 from .substrate import Substrate
+from .surroundings import Surroundings
 from .sweep import faster_cases, ideal_speed, preferred_cases, sweep
 from .version import __version__
+
+if TYPE_CHECKING:
+    from . import blind
+    from .diagnosis.diagnose import diagnose
+    from .diagnosis.result import Diagnosis
 
 __all__ = [
     "DRIVES",
@@ -25,6 +35,7 @@ __all__ = [
     "PAPER_MAGNETIZATION_DEG",
     "ROBOTS",
     "SUBSTRATES",
+    "Camera",
     "Cuboid",
     "Curved",
     "Diagnosis",
@@ -34,6 +45,7 @@ __all__ = [
     "Initial",
     "InputError",
     "Model",
+    "Relief",
     "Robot",
     "RotatingField",
     "Run",
@@ -44,11 +56,13 @@ __all__ = [
     "SpikedEnds",
     "StaticField",
     "Substrate",
+    "Surroundings",
     "TableField",
     "TumblersError",
     "__version__",
     "blind",
     "dataset",
+    "diagnose",
     "drive",
     "effects",
     "faster_cases",
@@ -59,3 +73,14 @@ __all__ = [
     "simulate",
     "sweep",
 ]
+
+# SciPy comes with a diagnosis: it waits until its own names are asked for.
+_OF_THE_DIAGNOSIS = ("Diagnosis", "diagnose")
+
+
+def __getattr__(name: str) -> object:
+    if name == "blind":
+        return import_module(".blind", __package__)
+    if name in _OF_THE_DIAGNOSIS:
+        return getattr(import_module(".diagnosis", __package__), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -20,6 +20,9 @@ use crate::step::Step;
 use crate::{Mat3, Vec3};
 use geometry::Support;
 use nalgebra::{Const, DimMin, SMatrix, SVector};
+use scales::Scales;
+
+mod scales;
 
 /// Scaled residual at which the reduced problem counts as solved. Rounding leaves about 1e-15.
 const TOLERANCE: f64 = 1e-13;
@@ -112,29 +115,6 @@ where
         (at, rows, jacobian) = next;
     }
     Reduced { at, iterations, converged: at.error <= ACCEPTABLE }
-}
-
-/// Row and column scales that make the linear system one of plain numbers: mass `m`, length `ℓ`, time `h`.
-struct Scales<const N: usize> {
-    angular: f64,
-    impulse: f64,
-    moment: f64,
-    length: f64,
-    /// `P`.
-    load: f64,
-}
-
-impl<const N: usize> Scales<N> {
-    fn new(step: &Step, start: &Unknowns) -> Self {
-        let contact = start.impulses.iter().map(|p| p.abs()).sum::<f64>();
-        Self {
-            angular: 1.0 / step.h,
-            impulse: step.mass * step.size / step.h,
-            moment: step.mass * step.size * step.size / step.h,
-            length: step.size,
-            load: step.load_scale() + contact,
-        }
-    }
 }
 
 impl Unknowns {

@@ -1,17 +1,20 @@
-//! Batches: the same bits for any number of threads, and a stop that is heard.
+//! Batches: the same bits for any number of threads, the poses that a recording has, and a stop that is heard.
 
 mod common;
 
 use common::*;
+use std::ops::ControlFlow;
 use std::sync::atomic::Ordering;
-use tumblers_dynamics::batch::{Control, Outcome, sweep};
-use tumblers_dynamics::{Metrics, Trial};
+use tumblers_dynamics::batch::{Control, Outcome, rollouts, sweep};
+use tumblers_dynamics::recording::record;
+use tumblers_dynamics::rollout::Rollout;
+use tumblers_dynamics::{Metrics, SolverKind, Trial, Vec3};
 
 fn trials() -> Vec<Trial> {
     (0..12).map(|i| Trial::new(pdms(spiked(f64::from(i)), 10.0, 30.0 * f64::from(i))).unwrap()).collect()
 }
 
-fn bits(outcome: &Outcome) -> [u64; 5] {
+fn bits(outcome: &Outcome<Metrics>) -> [u64; 5] {
     let Outcome::Done(Metrics { twist, drift, speed, max_residual, newton_iterations, .. }) = outcome else {
         panic!("{outcome:?}")
     };
@@ -34,4 +37,77 @@ fn a_stopped_batch_says_so() {
     let outcomes = sweep(&trials(), 2, &control).unwrap();
     assert!(outcomes.iter().all(|outcome| *outcome == Outcome::Stopped));
     assert_eq!(control.finished.load(Ordering::Relaxed), outcomes.len());
+}
+
+/// Robots on the level and with every term that the paper does not have, and how often their poses are kept.
+fn walks() -> (Vec<Trial>, Vec<u64>) {
+    let parts = [
+        cuboid_on_paper(0.01, 5.0),
+        disturbed(cuboid_on_paper(0.01, 2.0)),
+        pdms(spiked(2.0), 10.0, 90.0),
+        disturbed(pdms(spiked_ends(0.0), 0.0, 0.0)),
+    ];
+    (parts.into_iter().map(|parts| Trial::new(parts).unwrap()).collect(), vec![1, 7, 4, 200])
+}
+
+fn walked(outcomes: Vec<Outcome<Rollout>>) -> Vec<Rollout> {
+    let done = outcomes.into_iter().map(|outcome| match outcome {
+        Outcome::Done(rollout) => rollout,
+        other => panic!("{other:?}"),
+    });
+    done.collect()
+}
+
+fn pose_bits(position: &[[f64; 3]], orientation: &[[f64; 4]]) -> Vec<u64> {
+    position.iter().flatten().chain(orientation.iter().flatten()).map(|x| x.to_bits()).collect()
+}
+
+#[test]
+fn a_rollout_has_the_poses_of_a_recording() {
+    let (trials, every) = walks();
+    let rollouts = walked(rollouts(&trials, &every, 2, &Control::default()).unwrap());
+    for ((trial, every), rollout) in trials.iter().zip(every).zip(rollouts) {
+        let (recording, _) = record(trial, SolverKind::Reduced, every, |_| ControlFlow::Continue(())).unwrap();
+        assert_eq!(rollout.time, recording.time);
+        assert_eq!(rollout.contact_mode, recording.contact_mode);
+        assert_eq!(
+            pose_bits(&rollout.position, &rollout.orientation),
+            pose_bits(&recording.position, &recording.orientation)
+        );
+        assert_eq!(rollout.unconverged_steps, 0);
+    }
+}
+
+#[test]
+fn the_poses_do_not_depend_on_the_threads() {
+    let (trials, every) = walks();
+    let run = |threads| -> Vec<_> {
+        let rollouts = walked(rollouts(&trials, &every, threads, &Control::default()).unwrap());
+        rollouts.iter().map(|rollout| pose_bits(&rollout.position, &rollout.orientation)).collect()
+    };
+    assert_eq!(run(1), run(4));
+}
+
+#[test]
+fn a_diverging_trial_leaves_what_was_finite() {
+    let mut parts = cuboid_on_paper(0.01, 5.0);
+    // From the second half on a force that no velocity can hold.
+    parts.surroundings.times = std::sync::Arc::new([0.05]);
+    parts.surroundings.wrenches = std::sync::Arc::new([(Vec3::new(0.0, 0.0, 1e305), Vec3::zeros())]);
+    let trial = Trial::new(parts).unwrap();
+    let rollout = walked(rollouts(&[trial], &[1], 1, &Control::default()).unwrap()).remove(0);
+    let rows = rollout.time.len();
+    assert!((100..200).contains(&rows), "{rows} rows");
+    assert!(rollout.position.iter().flatten().all(|x| x.is_finite()));
+    assert!(rollout.orientation.iter().flatten().all(|x| x.is_finite()));
+    assert_eq!([rollout.position.len(), rollout.orientation.len(), rollout.contact_mode.len()], [rows; 3]);
+}
+
+#[test]
+fn stopped_rollouts_say_so() {
+    let (trials, every) = walks();
+    let control = Control::default();
+    control.stop.store(true, Ordering::Relaxed);
+    let outcomes = rollouts(&trials, &every, 2, &control).unwrap();
+    assert!(outcomes.iter().all(|outcome| *outcome == Outcome::Stopped));
 }

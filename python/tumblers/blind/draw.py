@@ -24,13 +24,13 @@ from .sensing import Nuisances, measure
 from .strength import Strength, strength
 from .world import Scene, Solver, watch
 
-__all__ = ["draw_dataset"]
+__all__ = ["QUIET_SIGMA", "QUIET_TRIAL_SIGMA", "draw_dataset"]
 
 _TARGETS = (0.7, 1.5, 3.0, 6.0, 12.0, 25.0)
 # Two effects, and causes outside the catalogue, are to be seen.
 _CLEAR_TARGETS, _CLEAR = (6.0, 12.0, 25.0), 4.5
 # A world without causes is one that its lab would call explained: what jitter shows stays below the noise.
-_QUIET, _QUIET_TRIAL = 0.7, 1.3
+QUIET_SIGMA, QUIET_TRIAL_SIGMA = 0.7, 1.3
 # What one effect should reach even where its range does not allow the target.
 _SEEN = 3.0
 _LABS, _DRAWS, _BISECTIONS, _CLOSE = 12, 3, 9, 0.12
@@ -127,7 +127,7 @@ def _draw_world(rng: np.random.Generator) -> _World | None:
         if not 6 <= len(lab.plans) <= 14:
             continue
         shown = jitter_strength(lab, jitter)
-        if shown.sigma <= _QUIET and max(shown.by_trial) <= _QUIET_TRIAL:
+        if shown.sigma <= QUIET_SIGMA and max(shown.by_trial) <= QUIET_TRIAL_SIGMA:
             bare = _World(lab, jitter, (), shown.sigma)
             return replace(bare, plain=tuple(bare.scenes(())))
     return None

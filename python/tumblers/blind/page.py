@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from .draw import QUIET_SIGMA, QUIET_TRIAL_SIGMA
 from .score import Criterion, Scores, Share
 
 __all__ = ["page_of", "print_scores"]
@@ -28,6 +29,11 @@ def page_of(scores: Scores) -> str:
         "The strength of a cause is the root mean square of what it changes in all numbers that were observed, in "
         "standard deviations of their noise, after the sensor's stated tolerances (origin, clock, heading, scale) have "
         "taken what they can.",
+        "Easier than a lab's data in these ways: a lab is drawn again where the nominal numbers' being off and the "
+        f"world's own step alone would move its numbers by more than {QUIET_SIGMA:g} sigma, or one trial's by more "
+        f"than {QUIET_TRIAL_SIGMA:g}, so that the most sensitive motions near step-out and the friction angle are "
+        "missing; a pair of effects that does not show in three labs is drawn again. An effect counts as named first "
+        "where it leads the effects of the diagnosis, whatever the verdict.",
         "## What has to hold",
         _table(("", "found", "wanted", "of", "met"), [_criterion_row(c) for c in scores.criteria]),
         "## What was named first",

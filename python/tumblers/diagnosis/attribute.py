@@ -6,9 +6,10 @@ Every effect is fitted, then pairs by forward selection from the best. Hypothese
 ln Z = -cost/(2c) - ½ ln det(1 + σ_u² JᵀJ/c) + ln prior,      c = max(1, cost of the best / number of measurements) n_c
 ```
 
-with the prior u ~ N(0, σ_u² 1) on parameters in units of their range. Neighbouring frames and channels share what the model
-itself gets wrong, so that n_c of them count as one; and where even the best hypothesis leaves more than noise, everything that
-is concluded is widened by that (a quasi-likelihood; McCullagh and Nelder 1989, 9.2). Outcomes are few and count each for one.
+with the prior u ~ N(0, σ_u² 1) on parameters in units of their range. Neighbouring frames and channels share what the
+model itself gets wrong, so that n_c of them count as one; and where even the best hypothesis leaves more than noise,
+everything that is concluded is widened by that (a quasi-likelihood; McCullagh and Nelder 1989, 9.2). Outcomes are few
+and count each for one.
 """
 
 from __future__ import annotations
@@ -35,18 +36,25 @@ OnPhase = Callable[[str, int, int], None]
 _PRIOR = {0: 0.4, 1: 0.45, 2: 0.15}
 # A gap is left where a measurement's mean squared difference is above this; the floor is made so that noise gives less.
 _LEFT = 0.95
-# Fits that take so much off the objective are worth another look, so many of them; the search goes on from many more starts
-# where a measurement's mean squared difference stays above this.
-_CLEAR, _POLISHED, _WANTING = 20.0, 4, 0.85
+# Fits that take so much off the objective are worth another look, so many of them; the search goes on from many more
+# starts where a measurement's mean squared difference stays above this.
+_CLEAR, _POLISHED, _WANTING = 20.0, 3, 0.85
+# Effects that lead after the first look are fitted in more steps.
+_LEADING = 6
 # So many neighbouring numbers of a track count as one.
 _ALIKE = 4.0
-# Evidence that is nearer than this (a factor of 1.6) is equal.
-_EQUAL = 0.5
+# Of equals the one with fewer parameters is preferred, then the one that the catalogue lists first.
+_PER_PARAMETER, _PER_PLACE = 0.15, 0.005
 # How many hypotheses are fitted again from more starts, and with how many, where the first fits leave a gap.
-_REFINED, _MORE_STARTS = 3, {1: 8, 2: 16}
-_MOST_STARTS = 16
+_REFINED, _MORE_STARTS, _MOST_STARTS = 3, {1: 8, 2: 16}, 16
+# Of an effect with more parameters than this only where it leads.
+_MANY = 4
+# Shares of the trials' time that are fitted on the way, from so many of the starts.
+_STAGES, _FOLLOWED = (0.25, 0.5), 1
 # Effects to which a second is added, and seconds that are fitted with each.
-_FIRSTS, _SECONDS = 2, 5
+_FIRSTS, _SECONDS, _PAIRS_POLISHED = 2, 4, 2
+# The second of them only where it leaves no more than so much of the objective of the best.
+_NEAR_BEST = 1.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +83,11 @@ class Contender:
     cost: float
     log_evidence: float = 0.0
     probability: float = 0.0
+
+    @property
+    def point(self) -> Floats:
+        """The parameters u, shape (p,)."""
+        return np.empty(0) if self.fit is None else self.fit.point
 
     @property
     def effects(self) -> tuple[Effect, ...]:
@@ -131,10 +144,10 @@ def attribute(
     """
     fitter = Fitter(comparison)
     scenarios = [comparison.simulator.nominal(i) for i in fitter.trials]
-    still = comparison.residual(comparison.nominal_paths)
-    nominal = Contender((), None, still, fitter.cost(still, np.zeros(1)))
+    nominal = _nominal(fitter)
     possible = [Hypothesis.of(kind, scenarios) for kind in kinds]
     possible = [h for h in possible if len(h.starts)]
+    names = [h.names[0] for h in possible]
 
     def tell(phase: str, done: int, total: int) -> None:
         if on_phase is not None:
@@ -142,29 +155,63 @@ def attribute(
 
     tell("first look at every effect", 0, 1)
     zeros = [np.zeros(len(h.neutral)) for h in possible]
-    scans = fitter.scan(possible, zeros, still)
+    scans = fitter.scan(possible, zeros, nominal.residual)
     singles: list[Contender] = []
+    leading = sorted(points[0][0] for points in scans)[:_LEADING]
     for k, (hypothesis, points) in enumerate(zip(possible, scans, strict=True)):
         tell("fitting each effect", k, len(possible))
+        cost, start = points[0]
         # Where nothing that was looked at is better than neutral, two steps from there suffice.
-        evaluations = 6 if np.any(points[0]) else 2
-        singles.append(_contender(fitter.fit(hypothesis, points[0], evaluations=evaluations)))
-    order = sorted(range(len(singles)), key=lambda k: singles[k].cost)
-    if singles and singles[order[0]].cost < nominal.cost - _CLEAR:
-        for n, k in enumerate(order[:_POLISHED]):
-            tell("a second look at the best", n, _POLISHED)
-            fit = singles[k].fit
-            assert fit is not None
-            singles[k] = _contender(fitter.fit(fit.hypothesis, fit.point, evaluations=10))
-        if _mean_square(comparison, min(singles, key=lambda c: c.cost)) > _WANTING:
-            for n, k in enumerate(order[:_REFINED]):
-                tell("more starts for the best", n, _REFINED)
-                singles[k] = _refined(fitter, singles[k], scans[k], seed)
-    contenders = [nominal, *singles]
-    best = min(singles, key=lambda c: c.cost, default=nominal)
-    if _mean_square(comparison, best) > _LEFT:
+        evaluations = (6 if cost in leading else 4) if np.any(start) else 2
+        singles.append(_contender(fitter.fit(hypothesis, start, evaluations=evaluations)))
+    if not singles or min(c.cost for c in singles) > nominal.cost - _CLEAR:
+        return _ranked([nominal, *singles], comparison, names)
+
+    singles.sort(key=lambda c: c.cost)
+    comparison.measure_noise_around(singles[0].effects)
+    tell("a second look at the best", 0, 1)
+    singles = _polished(fitter, _judged_again(fitter, singles), _POLISHED)
+    nominal = _nominal(fitter)
+    if _mean_square(comparison, singles[0]) > _WANTING:
+        for k in range(min(_REFINED, len(singles))):
+            tell("more starts for the best", k, _REFINED)
+            if k == 0 or len(singles[k].point) <= _MANY:
+                singles[k] = _refined(fitter, singles[k], seed)
+        singles.sort(key=lambda c: c.cost)
+    contenders = list(singles)
+    if _mean_square(comparison, singles[0]) > _LEFT:
         contenders += _pairs(fitter, singles, {h.names[0]: h for h in possible}, tell)
-    return _ranked(contenders, comparison, len(possible))
+        contenders.sort(key=lambda c: c.cost)
+        tell("a last look at the best", 0, 1)
+        comparison.measure_noise_around(contenders[0].effects)
+        contenders = _polished(fitter, _judged_again(fitter, contenders), _PAIRS_POLISHED)
+        nominal = _nominal(fitter)
+    return _ranked([nominal, *contenders], comparison, names)
+
+
+def _nominal(fitter: Fitter) -> Contender:
+    residual = fitter.comparison.residual(fitter.comparison.nominal_paths)
+    return Contender((), None, residual, fitter.cost(residual, np.zeros(1)))
+
+
+def _judged_again(fitter: Fitter, contenders: Sequence[Contender]) -> list[Contender]:
+    """Hold the same fits against another noise, the best first."""
+    made = []
+    for contender in contenders:
+        fit = contender.fit
+        assert fit is not None
+        residual = fitter.residuals(fit.hypothesis, [fit.point])[0]
+        made.append(_contender(replace(fit, residual=residual, cost=fitter.cost(residual, fit.point))))
+    return sorted(made, key=lambda c: c.cost)
+
+
+def _polished(fitter: Fitter, contenders: Sequence[Contender], count: int) -> list[Contender]:
+    """Fit the best so many on from where they are; the best first."""
+    made = list(contenders)
+    for k, contender in enumerate(made[:count]):
+        assert contender.fit is not None
+        made[k] = _contender(fitter.fit(contender.fit.hypothesis, contender.fit.point, evaluations=8))
+    return sorted(made, key=lambda c: c.cost)
 
 
 def _contender(fit: Fit) -> Contender:
@@ -176,20 +223,29 @@ def _mean_square(comparison: Comparison, contender: Contender) -> float:
     return robust_cost(values) / max(comparison.count, 1)
 
 
-def _refined(fitter: Fitter, contender: Contender, scanned: Sequence[Floats], seed: int) -> Contender:
-    """The best of fits from many more starts over the range."""
+def _refined(fitter: Fitter, contender: Contender, seed: int) -> Contender:
+    """Fit from many more starts over the range, each to the beginning of the trials first.
+
+    Where an effect is strong, paths soon have nothing in common any more; their beginnings still have.
+    """
     assert contender.fit is not None
     hypothesis = contender.fit.hypothesis
+    tracked = tuple(i for i in fitter.trials if len(fitter.comparison.readers[i].observed.time_s))
+    if not tracked:
+        return contender
     free = hypothesis.high > hypothesis.low
     count = _MORE_STARTS.get(int(free.sum()), _MOST_STARTS)
-    sobol = qmc.Sobol(len(free), rng=np.random.default_rng(seed))
-    share = sobol.random(count)
-    points = list(hypothesis.low + share * (hypothesis.high - hypothesis.low))
-    residuals = fitter.residuals(hypothesis, points)
-    tried = sorted(zip((fitter.cost(r, p) for r, p in zip(residuals, points, strict=True)), range(count), strict=True))
-    starts = [contender.fit.point, points[tried[0][1]], *scanned[1:2]]
-    fits = [fitter.fit(hypothesis, start, evaluations=10) for start in starts]
-    return _contender(min([contender.fit, *fits], key=lambda fit: fit.cost))
+    shares = qmc.Sobol(len(free), rng=np.random.default_rng(seed)).random(count)
+    points = [*(hypothesis.low + share * (hypothesis.high - hypothesis.low) for share in shares), contender.fit.point]
+    residuals = fitter.residuals(hypothesis, points, tracked, _STAGES[0])
+    costs = [fitter.cost(residual, point, tracked) for residual, point in zip(residuals, points, strict=True)]
+    fits = [contender.fit]
+    for k in np.argsort(costs, kind="stable")[:_FOLLOWED]:
+        point = points[k]
+        for stage in _STAGES:
+            point = fitter.fit(hypothesis, point, tracked, 5, stage).point
+        fits.append(fitter.fit(hypothesis, point, evaluations=8))
+    return _contender(min(fits, key=lambda fit: fit.cost))
 
 
 def _pairs(
@@ -198,7 +254,8 @@ def _pairs(
     hypotheses: Mapping[str, Hypothesis],
     tell: OnPhase,
 ) -> list[Contender]:
-    firsts = sorted(singles, key=lambda c: c.cost)[:_FIRSTS]
+    ordered = sorted(singles, key=lambda c: c.cost)
+    firsts = [c for c in ordered[:_FIRSTS] if c.cost < _NEAR_BEST * ordered[0].cost]
     found: dict[frozenset[str], Contender] = {}
     for n, first in enumerate(firsts):
         tell("fitting pairs", n, len(firsts))
@@ -207,31 +264,31 @@ def _pairs(
         joined = [first.fit.hypothesis + other for other in others]
         bases = [np.concatenate([first.fit.point, np.zeros(len(other.neutral))]) for other in others]
         scans = fitter.scan(joined, bases, first.residual, first.fit.jacobian)
-        looks = [fitter.residuals(h, [points[0]])[0] for h, points in zip(joined, scans, strict=True)]
-        costs = [fitter.cost(look, points[0]) for look, points in zip(looks, scans, strict=True)]
-        order = np.argsort(costs, kind="stable")[:_SECONDS]
+        order = np.argsort([points[0][0] for points in scans], kind="stable")[:_SECONDS]
         for k in order:
             names = frozenset(joined[k].names)
-            contender = _contender(fitter.fit(joined[k], scans[k][0], evaluations=8))
+            contender = _contender(fitter.fit(joined[k], scans[k][0][1], evaluations=4))
             if names not in found or contender.cost < found[names].cost:
                 found[names] = contender
-    return list(found.values())
+    return _polished(fitter, sorted(found.values(), key=lambda c: c.cost), _PAIRS_POLISHED)
 
 
-def _ranked(contenders: Sequence[Contender], comparison: Comparison, effects: int) -> Attribution:
+def _ranked(contenders: Sequence[Contender], comparison: Comparison, effects: Sequence[str]) -> Attribution:
     outcomes = sum(len(floor.outcome_scale) for floor in comparison.floors)
     alike = comparison.count / max(outcomes + (comparison.count - outcomes) / _ALIKE, 1.0)
     dispersion = alike * max(1.0, min(_mean_square(comparison, contender) for contender in contenders))
-    pairs = max(effects * (effects - 1) // 2, 1)
-    prior = {0: log(_PRIOR[0]), 1: log(_PRIOR[1] / max(effects, 1)), 2: log(_PRIOR[2] / pairs)}
+    count = max(len(effects), 1)
+    pairs = max(count * (count - 1) // 2, 1)
+    prior = {0: log(_PRIOR[0]), 1: log(_PRIOR[1] / count), 2: log(_PRIOR[2] / pairs)}
+    place = {name: k for k, name in enumerate(effects)}
     scored = []
     for c in contenders:
         evidence = -0.5 * c.cost / dispersion + prior[len(c.names)]
+        evidence -= _PER_PARAMETER * len(c.point) + _PER_PLACE * sum(place[name] for name in c.names)
         if c.fit is not None:
             information = _information(c.fit.jacobian, dispersion) * PRIOR_SIGMA**2
             evidence -= 0.5 * float(np.linalg.slogdet(information)[1])
         scored.append((evidence, c))
-    place = {c.names: k for k, c in enumerate(contenders)}
     top = max(evidence for evidence, _ in scored)
     weights = np.exp([evidence - top for evidence, _ in scored])
     shares = weights / weights.sum()
@@ -239,9 +296,5 @@ def _ranked(contenders: Sequence[Contender], comparison: Comparison, effects: in
         replace(c, log_evidence=evidence, probability=float(share))
         for (evidence, c), share in zip(scored, shares, strict=True)
     ]
-    # Of equals the one with the fewest parameters comes first, as listed in the catalogue.
     made.sort(key=lambda c: -c.log_evidence)
-    equal = [c for c in made if made[0].log_evidence - c.log_evidence < _EQUAL]
-    first = min(equal, key=lambda c: (0 if c.fit is None else len(c.fit.point), place[c.names]))
-    made.sort(key=lambda c: c is not first)
     return Attribution(tuple(made), dispersion)

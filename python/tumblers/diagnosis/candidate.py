@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..dataset import Dataset
-from ..field import Field, RotatingField, StaticField, field_to_table
+from ..field import RotatingField, StaticField, field_to_table
 from ..scenario import Scenario
 
 __all__ = ["Candidate", "candidates"]
@@ -139,7 +139,7 @@ def candidates(dataset: Dataset, most: int) -> tuple[Candidate, ...]:
         for frequency in _frequencies(rotating):
             for strength in strengths:
                 for axis in axes.values():
-                    field: Field = replace(axis, frequency_Hz=frequency, strength_T=strength)
+                    field = replace(axis, frequency_Hz=frequency, strength_T=strength)
                     time = round(min(longest, max(_LEAST_S, _CYCLES / frequency)), 3)
                     faster = frequency > fastest
                     runs += [

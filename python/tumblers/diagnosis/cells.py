@@ -118,14 +118,19 @@ class Cells:
                 }
                 if isinstance(field, RotatingField | StaticField):
                     block["strength_T"][:] = field.strength_T
-                if turning:
+                if turning and isinstance(field, RotatingField):
                     block["frequency_Hz"][:] = field.frequency_Hz
                     if not outcome:
                         block["phase_deg"] = (360.0 * field.frequency_Hz * clock) % 360.0
                 blocks.append(block)
         table = {key: np.concatenate([np.empty(0), *(block[key] for block in blocks)]) for key in _KEYS}
-        whole = {key: table.pop(key).astype(np.intp) for key in ("channel", "trial", "mode")}
-        return cls(outcome=table.pop("outcome") > 0.5, **whole, **table)
+        return cls(
+            outcome=table.pop("outcome") > 0.5,
+            channel=table.pop("channel").astype(np.intp),
+            trial=table.pop("trial").astype(np.intp),
+            mode=table.pop("mode").astype(np.intp),
+            **table,
+        )
 
     @property
     def excess(self) -> Floats:

@@ -21,7 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..dataset import Dataset
-from .floor import TOLERANCES, Floor, measure_floors
+from ..effects.base import Effect
+from .floor import TOLERANCES, Floor, build_floors, choose_steps, measure_sensitivity
 from .observed import observe
 from .pose import Path
 from .reading import Reader
@@ -99,7 +100,9 @@ class Comparison:
             Reader.of(observed, simulator.nominal(i), dataset.trials[i].duration_s)
             for i, observed in enumerate(observe(dataset))
         )
-        self.nominal_paths, self.floors = measure_floors(simulator, self.readers)
+        self.nominal_paths = choose_steps(simulator, self.readers)
+        self._nominal_sensitivity = measure_sensitivity(simulator, self.readers)
+        self.floors: tuple[Floor, ...] = build_floors(self.readers, [self._nominal_sensitivity])
         self._bounds, self.local_sigmas = self._tolerances()
         sensor = dataset.sensor
         camera = np.array([radians(sensor.heading_tolerance_deg), sensor.scale_tolerance])
@@ -114,6 +117,17 @@ class Comparison:
             bounds[i] = clock, sensor.origin_tolerance_m, sensor.origin_tolerance_m
         sigmas = bounds * np.array([_CLOCK_SIGMA, _ORIGIN_SIGMA, _ORIGIN_SIGMA])
         return bounds, np.maximum(sigmas, 1e-12)
+
+    def measure_noise_around(self, effects: tuple[Effect, ...]) -> None:
+        """Let the noise hold what moves the paths around a hypothesis too: older residuals do not compare any more.
+
+        Parameters
+        ----------
+        effects
+            The hypothesis.
+        """
+        there = measure_sensitivity(self.simulator, self.readers, effects)
+        self.floors = build_floors(self.readers, [self._nominal_sensitivity, there])
 
     @property
     def count(self) -> int:
@@ -140,7 +154,11 @@ class Comparison:
         return labels + [(name, np.full(1, reader.duration_s)) for name in floor.outcome_scale]
 
     def residual(
-        self, paths: Sequence[Path | None], train: Sequence[int] | None = None, fit_nuisances: bool = True
+        self,
+        paths: Sequence[Path | None],
+        train: Sequence[int] | None = None,
+        fit_nuisances: bool = True,
+        share: float = 1.0,
     ) -> Residual:
         """Return how wrong a model is.
 
@@ -152,15 +170,18 @@ class Comparison:
             Trials from which the camera's heading and scale are fitted; all if None.
         fit_nuisances
             False to take the sensor as perfect.
+        share
+            Of each trial's time that counts; what is later, and outcomes where it is less than 1, has no difference. A
+            whitened difference depends on the frames before it alone, so that a part is compared as it should be.
         """
         count = len(self.readers)
         local, shared = np.zeros((count, 3)), np.zeros(2 + len(TOLERANCES))
         train = range(count) if train is None else train
         if fit_nuisances:
-            local[:, 0] = [self._clock(i, path) for i, path in enumerate(paths)]
+            local[:, 0] = [self._clock(i, path, share) for i, path in enumerate(paths)]
             for _ in range(_ITERATIONS):
-                local, shared = self._improved(paths, local, shared, set(train))
-        trials = tuple(self._whitened(i, path, local[i], shared) for i, path in enumerate(paths))
+                local, shared = self._improved(paths, local, shared, set(train), share)
+        trials = tuple(self._whitened(i, path, local[i], shared, share) for i, path in enumerate(paths))
         prior = np.concatenate([(local / self.local_sigmas).ravel(), shared / self.shared_sigmas])
         return Residual(trials, prior, local, shared[:2], shared[2:])
 
@@ -168,33 +189,44 @@ class Comparison:
         """Return `measured - model` of a trial by channel, m or rad, NaN where lost, for given nuisances."""
         return self.readers[trial].differences(path, local, camera)
 
-    def _whitened(self, trial: int, path: Path | None, local: Floats, shared: Floats) -> Floats:
+    def _whitened(self, trial: int, path: Path | None, local: Floats, shared: Floats, share: float) -> Floats:
         floor, reader = self.floors[trial], self.readers[trial]
         if path is None:
             return np.full(self.sizes[trial], _NOT_RUN)
         differences = reader.differences(path, local, shared[:2])
         parts = [floor.whiten[name] @ differences[name][kept] for name, kept in floor.valid.items()]
         parts.append(self._outcomes(trial, path, shared[:2]))
-        return np.concatenate(parts) - floor.tolerance @ shared[2:]
+        return (np.concatenate(parts) - floor.tolerance @ shared[2:]) * self._counts(trial, share)
+
+    def _counts(self, trial: int, share: float) -> Floats:
+        """1 for the numbers of a trial that count, 0 for the others, shape (n_i,)."""
+        if share >= 1.0:
+            return np.ones(self.sizes[trial])
+        floor, reader = self.floors[trial], self.readers[trial]
+        last = share * reader.duration_s - self._bounds[trial, 0]
+        parts = [reader.observed.time_s[kept] <= last for kept in floor.valid.values()]
+        return np.concatenate([*parts, np.zeros(len(floor.outcome_scale))]).astype(np.float64)
 
     def _outcomes(self, trial: int, path: Path, camera: Floats) -> Floats:
         terms = self.readers[trial].outcome_terms(path, camera)
         return np.array([terms[name] * scale for name, scale in self.floors[trial].outcome_scale.items()])
 
-    def _clock(self, trial: int, path: Path | None) -> float:
-        """The best of some offsets of a trial's clock: a body that snaps over makes several minima."""
+    def _clock(self, trial: int, path: Path | None, share: float) -> float:
+        """Return the best of some offsets of a trial's clock: a body that snaps over makes several minima."""
         floor, reader, bound = self.floors[trial], self.readers[trial], self._bounds[trial, 0]
         if path is None or not len(reader.observed.time_s) or bound == 0.0:
             return 0.0
         best = (np.inf, 0.0)
+        last = share * reader.duration_s - bound if share < 1.0 else np.inf
+        early = {name: reader.observed.time_s[kept] <= last for name, kept in floor.valid.items()}
         for offset in bound * _CLOCKS:
             differences = reader.differences(path, np.array([offset, 0.0, 0.0]), np.zeros(2))
             loss = (offset / self.local_sigmas[trial, 0]) ** 2
             for name, kept in floor.valid.items():
-                values = floor.whiten[name] @ differences[name][kept]
+                values = (floor.whiten[name] @ differences[name][kept]) * early[name]
                 if name in ("x", "y") and len(values):
                     # What a shift of the origin cannot explain.
-                    shift = floor.whiten[name].sum(axis=1)
+                    shift = floor.whiten[name].sum(axis=1) * early[name]
                     weight = (self.local_sigmas[trial, 1]) ** -2
                     values = values - shift * ((shift @ values) / (shift @ shift + weight))
                 loss += float(np.sum(np.minimum(values**2, _OUTLIER**2)))
@@ -202,7 +234,7 @@ class Comparison:
         return best[1]
 
     def _improved(
-        self, paths: Sequence[Path | None], local: Floats, shared: Floats, train: set[int]
+        self, paths: Sequence[Path | None], local: Floats, shared: Floats, train: set[int], share: float
     ) -> tuple[Floats, Floats]:
         shared_weight = 1.0 / self.shared_sigmas**2
         normal, right = np.diag(shared_weight), -shared_weight * shared
@@ -224,10 +256,13 @@ class Comparison:
             table = np.vstack([table, np.column_stack([np.zeros((len(outcomes), 5)), outcomes])])
             a, r = table[:, :3], table[:, 5] - floor.tolerance @ shared[2:]
             g = np.hstack([table[:, 3:5], -floor.tolerance])
+            if share < 1.0:
+                counts = self._counts(i, share)
+                a, g, r = a * counts[:, None], g * counts[:, None], r * counts
             weight = 1.0 / self.local_sigmas[i] ** 2
             inverse = np.linalg.inv(a.T @ a + np.diag(weight))
             by_shared, own = a.T @ g, a.T @ r + weight * local[i]
-            blocks[i] = inverse, by_shared, own
+            blocks[i] = np.asarray(inverse, dtype=np.float64), by_shared, own
             if i in train:
                 normal += g.T @ g - by_shared.T @ inverse @ by_shared
                 right -= g.T @ r - by_shared.T @ inverse @ own

@@ -1,4 +1,4 @@
-"""`diagnose`: where model and measurement part, which effect causes it, and how far the gap shrinks once it is added."""
+"""`diagnose`: where model and measurement part, which effect causes it, and how far the gap shrinks with it added."""
 
 from __future__ import annotations
 
@@ -68,8 +68,8 @@ def diagnose(
     seed
         Of everything that is drawn: the same for the same seed.
     progress
-        True for a progress bar with the phase's name, or a callback that is told the phase, how much of it is done, and of
-        how much.
+        True for a progress bar with the phase's name, or a callback that is told the phase, how much of it is done, and
+        of how much.
 
     Returns
     -------
@@ -104,7 +104,7 @@ class _Conclusion:
         self.measured: dict[tuple[str, ...], HeldOut] = {}
 
     def held_out(self, contender: Contender) -> HeldOut:
-        """What a contender says of trials left out, computed once."""
+        """Return what a contender says of trials left out, computed once."""
         if contender.names not in self.measured:
             self.measured[contender.names] = held_out(self.fitter, contender)
         return self.measured[contender.names]

@@ -1,8 +1,8 @@
 """Intervals of a hypothesis's parameters, and samples of its effects.
 
-Laplace's standard deviations give two points of each parameter's profile, `u ± 1.645 σ`, the other parameters following along
-the ridge of the posterior; how much the objective really rises there stretches or shrinks each side so that it rises by
-1.645², the 90 % interval of a likelihood ratio.
+Laplace's standard deviations give two points of each parameter's profile, `u ± 1.645 σ`, the other parameters following
+along the ridge of the posterior; how much the objective really rises there stretches or shrinks each side so that it
+rises by 1.645², the 90 % interval of a likelihood ratio.
 """
 
 from __future__ import annotations
@@ -20,8 +20,9 @@ __all__ = ["intervals", "samples"]
 Floats = NDArray[np.float64]
 
 _SIDE = 1.645
-# A profile that is flatter or steeper than this is not trusted further.
-_LEAST_RISE, _MOST_RISE = 0.3, 12.0
+# A profile that is flatter or steeper than this is not trusted further in one round.
+_LEAST_RISE, _MOST_RISE = 0.3, 30.0
+_ROUNDS = 2
 _IDENTIFIED = 0.5
 
 
@@ -40,20 +41,23 @@ def intervals(fitter: Fitter, attribution: Attribution, contender: Contender) ->
         return {}
     hypothesis = fit.hypothesis
     covariance = attribution.covariance(contender)
-    points, sides = [], []
-    for j in range(len(fit.point)):
-        deviation = np.sqrt(covariance[j, j])
-        ridge = covariance[:, j] / covariance[j, j]
-        for sign in (-1.0, 1.0):
-            points.append(np.clip(fit.point + sign * _SIDE * deviation * ridge, hypothesis.low, hypothesis.high))
-            sides.append((j, sign, deviation))
-    residuals = fitter.residuals(hypothesis, points)
-    ends: dict[tuple[int, float], float] = {}
-    for (j, sign, deviation), point, residual in zip(sides, points, residuals, strict=True):
-        rise = (fitter.cost(residual, point) - contender.cost) / attribution.dispersion
-        stretch = np.sqrt(_SIDE**2 / np.clip(rise, _LEAST_RISE, _MOST_RISE))
-        end = fit.point[j] + sign * _SIDE * deviation * stretch
-        ends[j, sign] = float(np.clip(end, hypothesis.low[j], hypothesis.high[j]))
+    deviation = np.sqrt(np.diag(covariance))
+    ridges = covariance / np.diag(covariance)
+    sides = [(j, sign) for j in range(len(fit.point)) for sign in (-1.0, 1.0)]
+    reach = {(j, sign): _SIDE * deviation[j] for j, sign in sides}
+    for _ in range(_ROUNDS):
+        points = [
+            np.clip(fit.point + sign * reach[j, sign] * ridges[:, j], hypothesis.low, hypothesis.high)
+            for j, sign in sides
+        ]
+        residuals = fitter.residuals(hypothesis, points)
+        for (j, sign), point, residual in zip(sides, points, residuals, strict=True):
+            rise = (fitter.cost(residual, point) - contender.cost) / attribution.dispersion
+            reach[j, sign] *= float(np.sqrt(_SIDE**2 / np.clip(rise, _LEAST_RISE, _MOST_RISE)))
+    ends = {
+        (j, sign): float(np.clip(fit.point[j] + sign * reach[j, sign], hypothesis.low[j], hypothesis.high[j]))
+        for j, sign in sides
+    }
     out = {}
     for j, key in enumerate(hypothesis.keys):
         value = [hypothesis.neutral[j] + hypothesis.scale[j] * u for u in (fit.point[j], ends[j, -1.0], ends[j, 1.0])]

@@ -6,8 +6,8 @@ The objective is
 Σ ρ(r_i) + Σ (nuisance/σ)² + Σ (u/0.5)²,      ρ Huber's, quadratic to 4 sigmas
 ```
 
-over the whitened differences r of the trials that are fitted, the sensor's nuisances at their optimum for every point. The
-derivatives are finite differences, all of them one native batch.
+over the whitened differences r of the trials that are fitted, the sensor's nuisances at their optimum for every point.
+The derivatives are finite differences, all of them one native batch.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from scipy.optimize import least_squares
 
 from .comparison import Comparison, Residual
 from .hypothesis import PRIOR_SIGMA, Hypothesis
+from .pose import Path
 from .simulator import Job
 
 __all__ = ["HUBER", "Fit", "Fitter", "robust_cost"]
@@ -58,7 +59,7 @@ class Fit:
     cost
         The objective there.
     jacobian
-        Derivatives of the fitted differences by u, shape (n, p), Huber's weights in them.
+        Derivatives of the fitted differences and the nuisances' terms by u, shape (n, p), Huber's weights in them.
     """
 
     hypothesis: Hypothesis
@@ -82,7 +83,7 @@ class Fitter:
         self.trials = tuple(range(len(comparison.readers)))
 
     def residuals(
-        self, hypothesis: Hypothesis, points: Sequence[Floats], train: Sequence[int] | None = None
+        self, hypothesis: Hypothesis, points: Sequence[Floats], train: Sequence[int] | None = None, share: float = 1.0
     ) -> list[Residual]:
         """Return how wrong a hypothesis is at each of some points: one native batch.
 
@@ -92,19 +93,21 @@ class Fitter:
             What is simulated.
         train
             Trials that are simulated and from which the camera is fitted; all if None. The others count as not run.
+        share
+            Of each trial's time that counts.
         """
         chosen = self.trials if train is None else tuple(train)
         jobs = []
         for point in points:
             effects = hypothesis.effects(point)
-            jobs += [Job(i, effects) for i in chosen]
+            jobs += [Job(i, effects, share=share) for i in chosen]
         paths = self.comparison.simulator.run(jobs)
         out = []
         for k in range(len(points)):
-            row = [None for _ in self.trials]
+            row: list[Path | None] = [None for _ in self.trials]
             for i, path in zip(chosen, paths[k * len(chosen) : (k + 1) * len(chosen)], strict=True):
-                row[i] = path  # type: ignore[call-overload]
-            out.append(self.comparison.residual(row, chosen))
+                row[i] = path
+            out.append(self.comparison.residual(row, chosen, share=share))
         return out
 
     def cost(self, residual: Residual, point: Floats, train: Sequence[int] | None = None) -> float:
@@ -115,8 +118,8 @@ class Fitter:
 
     def scan(
         self, hypotheses: Sequence[Hypothesis], base: Sequence[Floats], still: Residual, slopes: Floats | None = None
-    ) -> list[list[Floats]]:
-        """Return the points from which each hypothesis is best fitted, the best first.
+    ) -> list[list[tuple[float, Floats]]]:
+        """Return the points from which each hypothesis is best fitted, with their objective, the best first.
 
         Every start is simulated; then, as if the differences were linear, the best point on the way to each start and
         the best combination of all of them, where that promises something.
@@ -135,7 +138,7 @@ class Fitter:
         starts = [[np.clip(b + s, h.low, h.high) for s in h.starts] for h, b in zip(hypotheses, base, strict=True)]
         found = self._batch(hypotheses, starts)
         here = still.over(self.trials)
-        first = np.empty((len(here), 0)) if slopes is None else slopes
+        first = np.empty((len(here), 0)) if slopes is None else slopes[: len(here)]
         tried: list[list[tuple[float, int, Floats]]] = []
         guesses: list[list[Floats]] = []
         for h, b, points, residuals in zip(hypotheses, base, starts, found, strict=True):
@@ -145,7 +148,7 @@ class Fitter:
             columns = [[k] for k in range(len(points))]
             if len(points) > 1 and len(b) - first.shape[1] > 1:
                 columns.append(list(range(len(points))))
-            mine = []
+            mine: list[tuple[float, Floats]] = []
             for chosen in columns:
                 table = np.column_stack([first, *(changes[k] for k in chosen)])
                 gram = table.T @ table
@@ -155,13 +158,16 @@ class Fitter:
                 for share, k in zip(shares[first.shape[1] :], chosen, strict=True):
                     step = step + np.clip(share, -_FARTHEST, 3.0) * (points[k] - b)
                 near = len(chosen) == 1 and not first.shape[1] and abs(shares[0] - 1.0) < _NEAR
-                if here @ here - np.sum((here + table @ shares) ** 2) > _PROMISE and not near:
-                    mine.append(np.clip(b + step, h.low, h.high))
-            guesses.append(mine)
+                promise = float(here @ here - np.sum((here + table @ shares) ** 2))
+                if promise > _PROMISE and not near:
+                    mine.append((-promise, np.clip(b + step, h.low, h.high)))
+            # With other effects at work already, one guess each is looked at.
+            mine.sort(key=lambda guess: guess[0])
+            guesses.append([guess for _, guess in (mine[:1] if first.shape[1] else mine)])
         for those, points, residuals in zip(tried, guesses, self._batch(hypotheses, guesses), strict=True):
             count = len(those)
             those += [(self.cost(r, p), count + n, p) for n, (r, p) in enumerate(zip(residuals, points, strict=True))]
-        return [[point for _, _, point in sorted(those, key=lambda entry: entry[:2])] for those in tried]
+        return [[(cost, p) for cost, _, p in sorted(those, key=lambda entry: entry[:2])] for those in tried]
 
     def _batch(self, hypotheses: Sequence[Hypothesis], points: Sequence[Sequence[Floats]]) -> list[list[Residual]]:
         jobs = []
@@ -173,7 +179,12 @@ class Fitter:
         return [[self.comparison.residual([next(paths) for _ in self.trials]) for _ in mine] for mine in points]
 
     def fit(
-        self, hypothesis: Hypothesis, start: Floats, train: Sequence[int] | None = None, evaluations: int = 8
+        self,
+        hypothesis: Hypothesis,
+        start: Floats,
+        train: Sequence[int] | None = None,
+        evaluations: int = 8,
+        share: float = 1.0,
     ) -> Fit:
         """Return the best point near a start.
 
@@ -187,6 +198,8 @@ class Fitter:
             Trials that are fitted; all if None.
         evaluations
             At most so many trial points.
+        share
+            Of each trial's time that counts.
         """
         chosen = self.trials if train is None else tuple(train)
         steps = np.full(len(start), 1e-2)
@@ -195,7 +208,7 @@ class Fitter:
         def at(point: Floats) -> Residual:
             key = point.tobytes()
             if key not in known:
-                known[key] = self.residuals(hypothesis, [point], chosen)[0]
+                known[key] = self.residuals(hypothesis, [point], chosen, share)[0]
             return known[key]
 
         def rows(residual: Residual, point: Floats) -> Floats:
@@ -206,7 +219,7 @@ class Fitter:
             # Towards the inside of the range.
             signed = np.where(point + steps > hypothesis.high, -steps, steps)
             moved = [point + signed[j] * np.eye(len(point))[j] for j in range(len(point))]
-            there = self.residuals(hypothesis, moved, chosen)
+            there = self.residuals(hypothesis, moved, chosen, share)
             columns = [(rows(r, p) - here) / h for r, p, h in zip(there, moved, signed, strict=True)]
             slope = np.array([np.sqrt(np.mean(column[: -len(point)] ** 2)) for column in columns])
             steps[:] = np.clip(_CHANGE / np.maximum(slope, 1e-12), _LEAST_STEP, _MOST_STEP)
@@ -229,7 +242,7 @@ class Fitter:
             gtol=1e-3,
         )
         residual = at(result.x)
-        own = len(residual.over(chosen))
-        weights = np.minimum(1.0, HUBER / np.maximum(np.abs(residual.over(chosen)), 1e-12)) ** 0.5
-        slopes = jacobian(result.x)[:own] * weights[:, None]
+        fitted = np.concatenate([residual.over(chosen), residual.prior])
+        weights = np.minimum(1.0, HUBER / np.maximum(np.abs(fitted), 1e-12)) ** 0.5
+        slopes = jacobian(result.x)[: len(fitted)] * weights[:, None]
         return Fit(hypothesis, result.x, residual, self.cost(residual, result.x, chosen), slopes)

@@ -6,23 +6,28 @@ The differences of one channel of one trial, at times t, count as drawn from
 Σ = σ² 1 + α² d dᵀ + α² diag(d̂²) + (d̄²/T) min(t_i, t_j) + Σ_p diag(d̂_p²)
 ```
 
-σ is the sensor's noise, d the change of the path when the step is halved, d̂ its greatest size at this frame and the next
-ones (when the body snaps over, a little too early or late is a large difference for a frame), d̄ its root mean square (a path
-that has been knocked off its course stays off it: a random walk), T the trial's time, and d_p the change with each nominal number moved by
-its tolerance. Multiplied by the inverse of the Cholesky factor of Σ, differences are plain numbers of unit variance; where
-the walk dominates they are the displacements from frame to frame, so that a stride, not a place, is compared. What the
-tolerances change alike in all trials is left to the fit: `d_p`, whitened, are the columns of nuisances with unit variance.
+σ is the sensor's noise, d the change of the path when the step is halved, d̂ its greatest size at this frame and the
+next ones (when the body snaps over, a little too early or late is a large difference for a frame), d̄ its root mean
+square (a path that has been knocked off its course stays off it: a random walk), T the trial's time, and d_p the change
+with each nominal number moved by its tolerance. Multiplied by the inverse of the Cholesky factor of Σ, differences are
+plain numbers of unit variance; where the walk dominates they are the displacements from frame to frame, so that a
+stride, not a place, is compared. What the tolerances change alike in all trials is left to the fit: `d_p`, whitened,
+are the columns of nuisances with unit variance.
+
+A strong effect can make a motion chaotic that was not. Σ therefore adds the changes around the nominal model and around
+the best hypothesis so far; it is the same for all hypotheses, so that they can be compared.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d
 
+from ..effects.base import Effect
 from ..effects.size_error import SizeError
 from ..field import RotatingField, StaticField, TableField
 from ..scenario import Scenario
@@ -30,7 +35,7 @@ from .pose import Path
 from .reading import Reader
 from .simulator import STEPS_S, Edit, Job, Simulator
 
-__all__ = ["TOLERANCES", "Floor", "measure_floors"]
+__all__ = ["TOLERANCES", "Floor", "Sensitivity", "build_floors", "choose_steps", "measure_sensitivity"]
 
 Floats = NDArray[np.float64]
 _NO_LOCAL, _NO_CAMERA = np.zeros(3), np.zeros(2)
@@ -65,8 +70,8 @@ class Floor:
     outcome_scale
         By kind of outcome, what its scaled difference is multiplied by, at most 1.
     tolerance
-        Whitened change of the differences with each nominal number moved by its tolerance, channels then outcomes, shape
-        (k, `TOLERANCES`).
+        Whitened change of the differences with each nominal number moved by its tolerance, channels then outcomes,
+        shape (k, `TOLERANCES`).
     numerical_sigmas
         Root mean square change of the path when the step is halved, in noise sigmas.
     tolerance_sigmas
@@ -129,8 +134,26 @@ _EDITS: tuple[Edit, ...] = (
 )
 
 
-def measure_floors(simulator: Simulator, readers: tuple[Reader, ...]) -> tuple[list[Path | None], tuple[Floor, ...]]:
-    """Choose each trial's step, and measure its noise.
+@dataclass(frozen=True, eq=False)
+class Sensitivity:
+    """What moves the path of one trial that should not, around one hypothesis.
+
+    Attributes
+    ----------
+    numerical, numerical_terms
+        Change of the differences by channel, m or rad, and of the outcomes' terms, when the step is halved.
+    tolerances, tolerance_terms
+        The same with each nominal number moved by its tolerance.
+    """
+
+    numerical: dict[str, Floats]
+    numerical_terms: dict[str, float]
+    tolerances: list[dict[str, Floats]]
+    tolerance_terms: list[dict[str, float]]
+
+
+def choose_steps(simulator: Simulator, readers: tuple[Reader, ...]) -> list[Path | None]:
+    """Choose each trial's step, and return the nominal paths, None where the model cannot be run.
 
     Parameters
     ----------
@@ -138,25 +161,63 @@ def measure_floors(simulator: Simulator, readers: tuple[Reader, ...]) -> tuple[l
         Whose steps are halved where halving them shows.
     readers
         Of the dataset's trials.
-
-    Returns
-    -------
-    tuple
-        The nominal paths, None where the model cannot be run, and the floors.
     """
     trials = range(len(readers))
     paths = simulator.run([Job(i) for i in trials] + [Job(i, divisor=2) for i in trials])
     nominal, halved = paths[: len(readers)], paths[len(readers) :]
     for _ in STEPS_S[1:]:
         coarse = [i for i in trials if _distance(readers[i], nominal[i], halved[i]) > _GOOD_ENOUGH]
-        finer = simulator.run([Job(i, divisor=4) for i in coarse])
-        for i, path in zip(coarse, finer, strict=True):
+        for i in coarse:
             simulator.step_s[i] *= 0.5
-            nominal[i], halved[i] = halved[i], path
-    moved = simulator.run([Job(i, edit=edit) for i in trials for edit in _EDITS])
-    count = len(_EDITS)
-    floors = tuple(_floor(readers[i], nominal[i], halved[i], moved[count * i : count * (i + 1)]) for i in trials)
-    return nominal, floors
+            nominal[i] = halved[i]
+        for i, path in zip(coarse, simulator.run([Job(i, divisor=2) for i in coarse]), strict=True):
+            halved[i] = path
+    return nominal
+
+
+def measure_sensitivity(
+    simulator: Simulator, readers: tuple[Reader, ...], effects: tuple[Effect, ...] = ()
+) -> list[Sensitivity]:
+    """Return what moves the paths that should not, by trial.
+
+    Parameters
+    ----------
+    simulator, readers
+        Of the dataset.
+    effects
+        The hypothesis around which it is measured.
+    """
+    trials = range(len(readers))
+    jobs = [Job(i, effects) for i in trials] + [Job(i, effects, divisor=2) for i in trials]
+    jobs += [Job(i, effects, edit=edit) for i in trials for edit in _EDITS]
+    paths = simulator.run(jobs)
+    count, first = len(_EDITS), 2 * len(readers)
+    out = []
+    for i, reader in enumerate(readers):
+        here, halved = paths[i], paths[len(readers) + i]
+        moved = paths[first + count * i : first + count * (i + 1)]
+        out.append(
+            Sensitivity(
+                _change(reader, here, halved),
+                _outcome_change(reader, here, halved),
+                [_change(reader, here, other) for other in moved],
+                [_outcome_change(reader, here, other) for other in moved],
+            )
+        )
+    return out
+
+
+def build_floors(readers: tuple[Reader, ...], around: Sequence[list[Sensitivity]]) -> tuple[Floor, ...]:
+    """Return the noise of each trial.
+
+    Parameters
+    ----------
+    readers
+        Of the dataset's trials.
+    around
+        What moves the paths, by hypothesis and trial; the last one's tolerances are the fit's.
+    """
+    return tuple(_floor(reader, [each[i] for each in around]) for i, reader in enumerate(readers))
 
 
 def _change(reader: Reader, path: Path | None, other: Path | None) -> dict[str, Floats]:
@@ -184,52 +245,50 @@ def _distance(reader: Reader, path: Path | None, other: Path | None) -> float:
     return max([_rms(reader, _change(reader, path, other)), *(abs(term) for term in terms)])
 
 
-def _floor(reader: Reader, path: Path | None, halved: Path | None, moved: list[Path | None]) -> Floor:
+def _floor(reader: Reader, around: Sequence[Sensitivity]) -> Floor:
     observed = reader.observed
-    numerical = _change(reader, path, halved)
-    tolerances = [_change(reader, path, other) for other in moved]
     time = np.maximum(observed.time_s, 0.0)
-    whiten, valid = {}, {}
+    whiten: dict[str, Floats] = {}
+    valid: dict[str, NDArray[np.bool_]] = {}
     lost = np.zeros(len(time), dtype=bool)
     for name in observed.channels:
         source = observed.values.get(name)
         gone = lost if source is None else ~np.isfinite(source)
         if source is None and observed.orientation is not None:
-            gone = ~np.isfinite(observed.orientation).all(axis=1)
-        kept = ~gone
-        t = time[kept]
+            gone = np.asarray(~np.isfinite(observed.orientation).all(axis=1))
+        valid[name] = np.asarray(~gone)
+        t = time[valid[name]]
         covariance = np.eye(len(t)) * observed.noise[name] ** 2
-        if name in numerical:
-            d = numerical[name][kept]
-            covariance += _ALPHA**2 * (np.outer(d, d) + np.diag(maximum_filter1d(np.abs(d), 3) ** 2))
-            walk = float(np.mean(d**2)) if len(d) else 0.0
-            covariance += walk / reader.duration_s * np.minimum.outer(t, t)
-        for change in tolerances:
-            if name in change and len(t):
-                covariance += np.diag(maximum_filter1d(np.abs(change[name][kept]), 3) ** 2)
-        factor = np.linalg.cholesky(covariance) if len(t) else covariance
-        whiten[name] = np.linalg.inv(factor) if len(t) else covariance
-        valid[name] = kept
-    numerical_terms = _outcome_change(reader, path, halved)
-    tolerance_terms = [_outcome_change(reader, path, other) for other in moved]
+        for each in around if len(t) else ():
+            if name in each.numerical:
+                d = each.numerical[name][valid[name]]
+                covariance += _ALPHA**2 * (np.outer(d, d) + np.diag(maximum_filter1d(np.abs(d), 3) ** 2))
+                covariance += float(np.mean(d**2)) / reader.duration_s * np.minimum.outer(t, t)
+            for change in each.tolerances:
+                if name in change:
+                    covariance += np.diag(maximum_filter1d(np.abs(change[name][valid[name]]), 3) ** 2)
+        whiten[name] = np.linalg.inv(np.linalg.cholesky(covariance)) if len(t) else covariance
     scale = {}
     for term in reader.outcome_kinds:
-        spread = (_ALPHA * numerical_terms.get(term, 0.0)) ** 2
-        # A change beyond the noise is a threshold that was crossed: no nuisance is linear there.
-        spread += sum(max(change.get(term, 0.0) ** 2 - 1.0, 0.0) for change in tolerance_terms)
+        spread = 0.0
+        for each in around:
+            spread += (_ALPHA * each.numerical_terms.get(term, 0.0)) ** 2
+            # A change beyond the noise is a threshold that was crossed: no nuisance is linear there.
+            spread += sum(max(change.get(term, 0.0) ** 2 - 1.0, 0.0) for change in each.tolerance_terms)
         scale[term] = float(1.0 / np.sqrt(1.0 + spread))
+    last = around[-1]
     columns = [
         np.concatenate(
             [whiten[name] @ change.get(name, np.zeros(len(time)))[valid[name]] for name in whiten]
             + [np.array([terms.get(term, 0.0) * scale[term] for term in scale])]
         )
-        for change, terms in zip(tolerances, tolerance_terms, strict=True)
+        for change, terms in zip(last.tolerances, last.tolerance_terms, strict=True)
     ]
     return Floor(
         whiten=whiten,
         valid=valid,
         outcome_scale=scale,
         tolerance=np.column_stack(columns),
-        numerical_sigmas=_rms(reader, numerical),
-        tolerance_sigmas=float(np.sqrt(sum(_rms(reader, change) ** 2 for change in tolerances))),
+        numerical_sigmas=max(_rms(reader, each.numerical) for each in around),
+        tolerance_sigmas=max(float(np.sqrt(sum(_rms(reader, c) ** 2 for c in each.tolerances))) for each in around),
     )

@@ -1,8 +1,9 @@
 """`shrink`: how far the gap shrinks on trials that no fit has seen.
 
-The trials are dealt into folds, alike conditions to different folds; each fold is left out once, and the effects' parameters,
-the camera's heading and scale and the nominal numbers' being off are fitted to the others. Only what belongs to a trial alone,
-its clock and its origin, is fitted in the trial itself. With ρ of `robust_cost` a gap is `√(Σρ/n)`.
+The trials are dealt into folds, alike conditions to different folds; each fold is left out once, and the effects'
+parameters, the camera's heading and scale and the nominal numbers' being off are fitted to the others. Only what
+belongs to a trial alone, its clock and its origin, is fitted in the trial itself. With ρ of `robust_cost` a gap is
+`√(Σρ/n)`.
 """
 
 from __future__ import annotations

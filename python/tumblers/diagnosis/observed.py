@@ -83,6 +83,8 @@ def _observed(dataset: Dataset, trial: LabTrial) -> Observed:
     for column in track.channels.values():
         found |= np.isfinite(column)
     kept = np.flatnonzero(found)
+    if not len(kept):
+        return Observed(trial.id, empty, {}, None, {}, 0.0, trial.outcome, len(found), len(found))
     if len(kept) > _MOST_FRAMES:
         kept = kept[np.unique(np.linspace(0, len(kept) - 1, _MOST_FRAMES).round().astype(int))]
     columns = {name: np.asarray(column, dtype=np.float64)[kept] for name, column in track.channels.items()}
@@ -104,7 +106,7 @@ def _observed(dataset: Dataset, trial: LabTrial) -> Observed:
         values=values,
         orientation=orientation,
         noise=noise,
-        frame_interval_s=track.frame_interval_s,
+        frame_interval_s=track.frame_interval_s if len(found) > 1 else 0.0,
         outcome=trial.outcome,
         frames=len(track.time_s),
         lost=int(len(found) - found.sum()),

@@ -158,7 +158,7 @@ class Reader:
         }
 
     def nuisance_columns(self, path: Path, local: Floats, camera: Floats) -> dict[str, Floats]:
-        """Return the derivatives of the differences by the nuisances, by channel, shape (n, 5): `LOCAL`, then `GLOBAL`."""
+        """Return the differences' derivatives by the nuisances, by channel, shape (n, 5): `LOCAL`, then `GLOBAL`."""
         here = self.differences(path, local, camera)
         later = self.differences(path, local + np.array([_TIME_STEP_S, 0.0, 0.0]), camera)
         position, orientation = path.at(self.observed.time_s + local[0])
@@ -208,6 +208,6 @@ def _about_z(orientation: Floats, angle: float) -> Floats:
 
 
 def _upward(orientation: Floats) -> Floats:
-    """The substrate's normal in the body frame, shape (n, 3)."""
+    """Return the substrate's normal in the body frame, shape (n, 3)."""
     w, x, y, z = orientation.T
     return np.stack([2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)], axis=1)

@@ -120,7 +120,8 @@ class Gap:
     before, after_nuisance_only, after
         For the nominal model and a perfect sensor, with the sensor's nuisances fitted, and with the chosen effects.
     shrink
-        ``1 - (after - noise_floor) / (before - noise_floor)`` within [0, 1], with a 90 % bootstrap interval over trials.
+        ``1 - (after - noise_floor) / (before - noise_floor)`` within [0, 1], with a 90 % interval by bootstrap over
+        trials.
     held_out_trials
         Each was left out of a fit once.
     by_trial
@@ -249,7 +250,8 @@ class Overlay:
     time_s
         Of the frames, s, shape (n,).
     measured, nominal, explained
-        By channel (``x``, ``y``, ``z`` in m, ``tilt`` and ``heading`` in degrees), shape (n,); with the nuisances fitted.
+        By channel (``x``, ``y``, ``z`` in m, ``tilt`` and ``heading`` in degrees), shape (n,); with the nuisances
+        fitted.
     outcomes
         Kind of outcome to (measured, nominal, explained).
     """

@@ -8,6 +8,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import _core
 from ..camera import Camera
@@ -33,6 +34,7 @@ _STEPS_PER_CYCLE = 100
 _MOST_KEPT = 512
 
 Edit = Callable[[Scenario], Scenario]
+Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,12 +51,15 @@ class Job:
         By how much the trial's step is divided.
     edit
         A change of the scenario beside the effects.
+    share
+        How much of the trial's time is simulated, up to 1.
     """
 
     trial: int
     effects: tuple[Effect, ...] = ()
     divisor: int = 1
     edit: Edit | None = None
+    share: float = 1.0
 
 
 class Simulator:
@@ -94,7 +99,7 @@ class Simulator:
             lab = self.dataset.trials[trial]
             scenario = lab.scenario(self.dataset, key[1], model=self.model)
             if not isinstance(lab.field, TableField):
-                interval = lab.track.frame_interval_s if lab.track is not None else 0.0
+                interval = lab.track.frame_interval_s if lab.track is not None and lab.track.time_s.size > 1 else 0.0
                 longer = lab.duration_s + interval + _LONGEST_INTERVAL_S
                 scenario = replace(scenario, run=replace(scenario.run, duration_s=longer))
             self._nominal[key] = scenario
@@ -118,6 +123,9 @@ class Simulator:
             scenario = job.edit(scenario)
         for effect in job.effects:
             scenario = effect.edit(scenario)
+        if job.share < 1.0:
+            shorter = max(job.share * scenario.run.duration_s, 2.0 * _LONGEST_INTERVAL_S)
+            scenario = replace(scenario, run=replace(scenario.run, duration_s=shorter))
         return scenario
 
     def run(self, jobs: Sequence[Job]) -> list[Path | None]:
@@ -150,7 +158,7 @@ class Simulator:
         for scenario, result, rows in zip(runnable, results, every, strict=True):
             self._known[scenario] = result, rows
         paths = [
-            None if seen is None or moved not in self._known else self._path(seen, *self._known[moved])
+            None if seen is None or moved is None or moved not in self._known else self._path(seen, *self._known[moved])
             for seen, moved in zip(scenarios, moving, strict=True)
         ]
         while len(self._known) > _MOST_KEPT:
@@ -200,7 +208,7 @@ def _rows_every(scenario: Scenario) -> int:
     return max(1, min(int(longest / scenario.run.step_s + 1e-9), scenario.run.steps))
 
 
-def _turned(orientation: np.ndarray, vector: np.ndarray) -> np.ndarray:  # type: ignore[type-arg]
+def _turned(orientation: Floats, vector: Floats) -> Floats:
     w, v = orientation[:, :1], orientation[:, 1:]
     cross = np.cross(v, vector)
     return np.asarray(vector + 2.0 * (w * cross + np.cross(v, cross)))

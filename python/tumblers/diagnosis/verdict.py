@@ -1,12 +1,13 @@
 """Whether there is a gap, whether it is explained, and what cannot be told apart.
 
-The posterior predictive test holds the mean squared difference, over all trials and in the worst one, against what a right
-model gives: the floor is made so that this is below 1.
+The posterior predictive test holds the mean squared difference, over all trials and in the worst one, against what a
+right model gives: the floor is made so that this is below 1.
 """
 
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .attribute import Attribution, Contender
 from .comparison import Comparison
@@ -16,7 +17,7 @@ from .result import Gap, Verdict
 __all__ = ["judge", "mean_squares", "ties"]
 
 # A right model's mean square over all numbers, and in its worst trial.
-_EXPLAINED, _WORST = 1.15, 2.0
+_EXPLAINED, _WORST = 1.25, 2.0
 # And on trials that no fit has seen.
 _FORETOLD, _NO_WORSE = 1.5, 1.02
 # A gap is called one where the best effects take away more than this share of the noise's variance.
@@ -25,13 +26,13 @@ _LEAST_GAP = 0.01
 _TIED, _SAME = 3.0, 0.25
 
 
-def mean_squares(comparison: Comparison, contender: Contender) -> np.ndarray:  # type: ignore[type-arg]
+def mean_squares(contender: Contender) -> NDArray[np.float64]:
     """Return Σρ/n of each trial, shape (trials,)."""
     return np.array([robust_cost(values) / max(len(values), 1) for values in contender.residual.trials])
 
 
 def _mean_square(comparison: Comparison, contender: Contender) -> float:
-    return float(np.average(mean_squares(comparison, contender), weights=comparison.sizes))
+    return float(np.average(mean_squares(contender), weights=comparison.sizes))
 
 
 def judge(comparison: Comparison, attribution: Attribution, gap: Gap) -> tuple[Verdict, Contender]:
@@ -61,7 +62,7 @@ def judge(comparison: Comparison, attribution: Attribution, gap: Gap) -> tuple[V
 
 
 def _right(comparison: Comparison, contender: Contender) -> bool:
-    each = mean_squares(comparison, contender)
+    each = mean_squares(contender)
     # In a trial of few numbers noise alone gives more.
     worst = _WORST * (1.0 + 2.0 * np.sqrt(2.0 / np.maximum(comparison.sizes, 1)))
     return bool(_mean_square(comparison, contender) <= _EXPLAINED and np.all(each <= worst))

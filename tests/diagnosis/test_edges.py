@@ -1,0 +1,185 @@
+"""Datasets at the edge of what can be diagnosed: an honest word or one line."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tumblers import InputError, dataset
+from tumblers.dataset import Dataset, LabTrial, Outcome, Track
+from tumblers.diagnosis import diagnose
+from tumblers.diagnosis.words import summary
+from tumblers.effects import CATALOGUE, get, load_file
+from tumblers.field import TableField
+from tumblers.presets import drive
+
+from .lab import PLANS, measure, plan, without
+
+CONSIDERED = ("size_error", "friction_coefficient", "viscous_drag")
+EXAMPLE = Path(__file__).parents[2] / "examples" / "aluminium_30deg"
+DRAG = get("viscous_drag").from_vector((0.02,))
+
+WEAK_AMPLIFIER = '''
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+from tumblers.effects import Effect, Parameter
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class WeakAmplifier(Effect):
+    """The coils get less current than they are told."""
+
+    name: ClassVar[str] = "weak_amplifier"
+    source: ClassVar[str] = "Ohm"
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter(key="factor", neutral=1.0, low=0.3, high=1.5, unit="1", meaning="field over the nominal one"),
+    )
+    factor: float = 1.0
+
+    def act(self, scenario):
+        """Return the scenario with another field."""
+        field = scenario.field
+        return replace(scenario, field=replace(field, strength_T=field.strength_T * self.factor))
+'''
+
+
+def moved(data: Dataset, share: float) -> Dataset:
+    """Return a dataset in which the robots got on by another share of the way along y."""
+
+    def track(old: Track) -> Track:
+        return Track(time_s=old.time_s, channels={**old.channels, "y_m": share * old.channels["y_m"]})
+
+    return replace(
+        data, trials=tuple(replace(t, track=track(t.track)) if t.track is not None else t for t in data.trials)
+    )
+
+
+def test_one_trial_with_a_gap_is_never_explained() -> None:
+    diagnosis = diagnose(measure(plan(PLANS[1:2]), (DRAG,)), effects=CONSIDERED, jobs=2)
+    assert diagnosis.verdict == "unexplained"
+    assert diagnosis.gap.held_out_trials == ()
+    assert any("single trial" in said for said in diagnosis.assumptions)
+    assert json.loads(diagnosis.to_json())["gap"]["shrink"]["estimate"] is not None
+
+
+def test_one_trial_without_a_gap_is_no_gap() -> None:
+    assert diagnose(measure(plan(PLANS[1:2])), effects=CONSIDERED, jobs=2).verdict == "no_gap"
+
+
+def test_the_papers_outcomes_leave_two_causes_and_a_trial_that_parts_them() -> None:
+    diagnosis = diagnose(dataset.load(EXAMPLE), jobs=2)
+    assert diagnosis.verdict == "explained"
+    pair = {"friction_coefficient", "line_contact_adhesion"}
+    (first,) = diagnosis.effects
+    assert first.name in pair
+    assert pair - {first.name} <= set(first.confounded_with)
+    inclines = [region for region in diagnosis.where if region.axis == "incline_deg"]
+    assert inclines
+    assert inclines[0].low is not None
+    assert inclines[0].high is not None
+    assert inclines[0].low <= 30.0 <= inclines[0].high
+    assert not inclines[0].low <= 20.0 <= inclines[0].high
+    assert [region.value for region in diagnosis.where if region.axis == "trial"][:1] == ["slope30"]
+    assert diagnosis.next_trials
+    assert diagnosis.next_trials[0].information_bits > 0.3
+    said = diagnosis.next_trials[0].why
+    assert first.name in said or any(name in said for name in first.confounded_with)
+
+
+def test_a_dataset_in_which_every_frame_is_lost_is_refused_in_one_line() -> None:
+    data = measure(plan(PLANS[:2]))
+    for name in ("f02", "f05"):
+        data = without(data, name, slice(None))
+    with pytest.raises(InputError) as caught:
+        diagnose(data, effects=CONSIDERED)
+    assert "every frame is lost" in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_outcomes_that_contradict_each_other_are_not_explained() -> None:
+    def trial(name: str, climbs: bool) -> LabTrial:
+        outcome = Outcome(climbs=climbs)
+        return LabTrial(id=name, field=drive(0.020, 1.0), duration_s=1.0, incline_deg=20.0, outcome=outcome)
+
+    data = replace(plan(PLANS[:1]), trials=tuple(trial(f"t{k}", climbs=k % 2 == 0) for k in range(6)))
+    diagnosis = diagnose(data, effects=CONSIDERED, jobs=2)
+    assert diagnosis.verdict == "unexplained"
+    assert "nothing in the catalogue" in summary(diagnosis) or "unexplained" in summary(diagnosis).lower()
+
+
+@pytest.mark.parametrize("share", [10.0, -1.0])
+def test_far_outside_the_model_is_unexplained(share: float) -> None:
+    data = moved(measure(plan(PLANS[:3])), share)
+    diagnosis = diagnose(data, effects=CONSIDERED, jobs=2)
+    assert diagnosis.verdict == "unexplained"
+    assert diagnosis.gap.after > 5.0
+    assert summary(diagnosis)
+    assert json.loads(diagnosis.to_json())["gap"]["after"] > 5.0
+
+
+def test_a_tabulated_field_is_as_good_as_another() -> None:
+    time = np.linspace(0.0, 0.7, 141)
+    angle = 2.0 * np.pi * 3.0 * time
+    rows = tuple((0.0, float(0.01 * np.cos(a)), float(0.01 * np.sin(a))) for a in angle)
+    table = TableField(time_s=tuple(time.tolist()), field_T=rows)
+    fields = [("table", table, 0.0), ("f05", drive(0.010, 5.0), 0.0), ("slope", table, 10.0)]
+    none = diagnose(measure(plan(fields)), effects=CONSIDERED, jobs=2)
+    assert none.verdict == "no_gap"
+    drag = diagnose(measure(plan(fields), (DRAG,)), effects=CONSIDERED, jobs=2)
+    assert drag.effects[0].name == "viscous_drag"
+
+
+def test_a_track_of_two_frames_counts_for_what_it_is() -> None:
+    data = measure(plan(PLANS[:3]))
+    first = data.trials[0].track
+    assert first is not None
+    short = Track(
+        time_s=first.time_s[[5, 20]], channels={name: values[[5, 20]] for name, values in first.channels.items()}
+    )
+    data = replace(data, trials=(replace(data.trials[0], track=short), *data.trials[1:]))
+    diagnosis = diagnose(data, effects=CONSIDERED, jobs=2)
+    assert diagnosis.verdict == "no_gap"
+    assert diagnosis.floors[0].frames == 2
+
+
+def test_a_track_of_one_frame_counts_for_what_it_is() -> None:
+    data = measure(plan(PLANS[:3]))
+    first = data.trials[0].track
+    assert first is not None
+    short = Track(time_s=first.time_s[[5]], channels={name: values[[5]] for name, values in first.channels.items()})
+    data = replace(data, trials=(replace(data.trials[0], track=short), *data.trials[1:]))
+    assert diagnose(data, effects=CONSIDERED, jobs=2).verdict == "no_gap"
+
+
+def test_an_effect_of_ones_own_is_found(tmp_path: Path) -> None:
+    file = tmp_path / "weak_amplifier.py"
+    file.write_text(WEAK_AMPLIFIER, encoding="utf-8")
+    (kind,) = load_file(file)
+    try:
+        truth = kind.from_vector((0.5,))
+        diagnosis = diagnose(measure(plan(), (truth,)), effects=[*CONSIDERED, "weak_amplifier"], jobs=2)
+        first = diagnosis.effects[0]
+        assert first.name == "weak_amplifier"
+        interval = first.parameters["factor"]
+        assert interval.low <= 0.5 <= interval.high
+        assert "weak_amplifier" in diagnosis.effects_toml()
+        assert summary(diagnosis)
+    finally:
+        del CATALOGUE["weak_amplifier"]
+
+
+@pytest.mark.parametrize("effects", [[], ["no_such_effect"], "size_error"])
+def test_effects_that_are_not_there_are_refused(effects: list[str]) -> None:
+    with pytest.raises(InputError, match="effect"):
+        diagnose(plan(PLANS[:1]), effects=effects)
+
+
+@pytest.mark.parametrize("jobs", [0, -1, True, 1.5])
+def test_jobs_that_make_no_sense_are_refused(jobs: int) -> None:
+    with pytest.raises(InputError, match="jobs"):
+        diagnose(plan(PLANS[:1]), jobs=jobs)

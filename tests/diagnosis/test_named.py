@@ -1,0 +1,143 @@
+"""A known cause is named with its size, no cause is no gap, and what is said can be pasted and run."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path as File
+
+import numpy as np
+import pytest
+
+from tumblers import Scenario, simulate
+from tumblers.dataset import Dataset
+from tumblers.diagnosis import Diagnosis, diagnose
+from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.fit import robust_cost
+from tumblers.diagnosis.pose import Path
+from tumblers.diagnosis.simulator import Simulator
+from tumblers.effects import get
+from tumblers.effects.base import Effect
+
+from .lab import measure, plan
+
+CONSIDERED = ("size_error", "friction_coefficient", "field_rolloff", "viscous_drag")
+TRUTHS: dict[str, Effect] = {
+    "size_error": get("size_error").from_vector((1.06, 1.0)),
+    "friction_coefficient": get("friction_coefficient").from_vector((0.6,)),
+    "field_rolloff": get("field_rolloff").from_vector((0.03,)),
+    "viscous_drag": get("viscous_drag").from_vector((0.02,)),
+}
+
+
+def seen(truth: Effect) -> Dataset:
+    return measure(plan(), (truth,), clock_frames=0.2, origin_m=2e-5, heading_deg=0.5)
+
+
+@pytest.fixture(scope="module")
+def dragged() -> Diagnosis:
+    return diagnose(seen(TRUTHS["viscous_drag"]), effects=CONSIDERED, jobs=2)
+
+
+@pytest.fixture(scope="module")
+def nothing() -> Diagnosis:
+    return diagnose(measure(plan(), clock_frames=-0.2, origin_m=2e-5), effects=CONSIDERED, jobs=2)
+
+
+def check_named(diagnosis: Diagnosis, truth: Effect) -> None:
+    assert diagnosis.verdict == "explained"
+    first = diagnosis.effects[0]
+    assert first.name == truth.name
+    assert first.probability > 0.9
+    for parameter, value in zip(truth.parameters, truth.vector(), strict=True):
+        interval = first.parameters[parameter.key]
+        assert interval.low <= value <= interval.high, f"{parameter.key}: {value} is not in {interval}"
+        assert interval.low <= interval.estimate <= interval.high
+    assert diagnosis.gap.before > diagnosis.gap.after
+    assert diagnosis.gap.shrink.estimate > 0.9
+
+
+@pytest.mark.parametrize("name", ["size_error", "friction_coefficient", "field_rolloff"])
+def test_a_cause_is_named_with_its_size(name: str) -> None:
+    check_named(diagnose(seen(TRUTHS[name]), effects=CONSIDERED, jobs=2), TRUTHS[name])
+
+
+def test_drag_is_named_with_its_size(dragged: Diagnosis) -> None:
+    check_named(dragged, TRUTHS["viscous_drag"])
+
+
+def test_no_cause_is_no_gap(nothing: Diagnosis) -> None:
+    assert nothing.verdict == "no_gap"
+    assert nothing.effects == nothing.chosen == nothing.where == nothing.next_trials == ()
+    assert nothing.effects_toml() == ""
+    assert nothing.gap.after_nuisance_only < 1.1
+
+
+@pytest.mark.parametrize("which", ["dragged", "nothing"])
+def test_the_file_obeys_its_format(which: str, request: pytest.FixtureRequest) -> None:
+    said = json.loads(request.getfixturevalue(which).to_json())
+    assert said["format"] == "tumblers-diagnosis/1"
+    assert said["verdict"] in ("no_gap", "explained", "unexplained")
+    for effect in said["effects"]:
+        assert 0.0 <= effect["probability"] <= 1.0
+        assert isinstance(effect["confounded_with"], list)
+        keys = {parameter.key for parameter in get(effect["name"]).parameters}
+        assert set(effect["parameters"]) == keys
+        for interval in effect["parameters"].values():
+            assert interval["low"] <= interval["estimate"] <= interval["high"]
+    ranking = said["ranking"]
+    assert sum(ranked["probability"] for ranked in ranking) == pytest.approx(1.0, abs=1e-9)
+    assert sorted(ranked["effects"] for ranked in ranking if len(ranked["effects"]) < 2) == sorted(
+        [[], *([name] for name in CONSIDERED)]
+    )
+    assert ranking[0]["effects"] == [effect["name"] for effect in said["effects"]]
+    for ranked in ranking[:1]:
+        assert ranked["held_out_gap"] is not None
+        assert ranked["shrink"] is not None
+    gap = said["gap"]
+    assert gap["unit"] == "noise sigmas"
+    for key in ("noise_floor", "before", "after_nuisance_only", "after"):
+        assert isinstance(gap[key], float), key
+    assert 0.0 <= gap["shrink"]["low"] <= gap["shrink"]["estimate"] <= gap["shrink"]["high"] <= 1.0
+    assert gap["held_out_trials"] == [trial.id for trial in plan().trials]
+    expected = 1.0 - (gap["after"] - gap["noise_floor"]) / (gap["before"] - gap["noise_floor"])
+    assert gap["shrink"]["estimate"] == pytest.approx(np.clip(expected, 0.0, 1.0))
+    shares = [region["share_of_gap"] for region in said["where"]]
+    assert shares == sorted(shares, reverse=True)
+    for region in said["where"]:
+        assert ("value" in region) != ({"low", "high"} <= set(region))
+    for proposed in said["next_trials"]:
+        assert {"why", "trial"} <= set(proposed)
+
+
+def test_the_answer_depends_on_the_seed_alone(dragged: Diagnosis) -> None:
+    again = diagnose(seen(TRUTHS["viscous_drag"]), effects=CONSIDERED, jobs=1)
+    assert again.to_json() == dragged.to_json()
+    assert again.effects_toml() == dragged.effects_toml()
+
+
+def test_the_pasted_effect_gives_the_gap_that_the_report_states(dragged: Diagnosis, tmp_path: File) -> None:
+    dataset = dragged.dataset
+    comparison = Comparison(dataset, Simulator(dataset, 1))
+    paths = []
+    for trial in dataset.trials:
+        floor = next(floor for floor in dragged.floors if floor.trial == trial.id)
+        bare = trial.scenario(dataset, floor.step_s, model=dragged.model)
+        file = tmp_path / f"{trial.id}.toml"
+        file.write_text(bare.to_toml() + "\n" + dragged.effects_toml(), encoding="utf-8")
+        pasted = Scenario.load(file)
+        assert pasted == dragged.scenario(trial.id)
+        run = simulate(pasted)
+        paths.append(
+            Path(
+                interval_s=floor.step_s,
+                position_m=run["position_m"].values,
+                orientation=run["orientation"].values,
+                contact_mode=run["contact_mode"].values,
+            )
+        )
+    values = comparison.residual(paths).over(range(len(paths)))
+    gap = np.sqrt(robust_cost(values) / comparison.count)
+    # A fit looks at every fourth row or so of a run.
+    assert gap == pytest.approx(dragged.ranking[0].gap, rel=0.02)
+    # Without the effect the gap is another one.
+    assert dragged.gap.after_nuisance_only > 2.0 * gap

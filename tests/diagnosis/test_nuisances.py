@@ -1,0 +1,73 @@
+"""What is a matter of the sensor or of the computation is never taken for physics."""
+
+from __future__ import annotations
+
+import pytest
+
+from tumblers.diagnosis import diagnose
+
+from .lab import UPWARDS, measure, plan, without
+
+CONSIDERED = ("camera_calibration", "size_error", "substrate_tilt", "field_rolloff")
+
+
+@pytest.mark.parametrize(("seed", "sign"), [(0, 1.0), (1, -1.0), (2, 1.0)])
+def test_a_sensor_within_its_tolerance_is_no_effect(seed: int, sign: float) -> None:
+    off = {"clock_frames": 0.45, "heading_deg": 1.5, "scale": 1.004}
+    dataset = measure(
+        plan(),
+        seed=seed,
+        clock_frames=sign * off["clock_frames"],
+        origin_m=4e-5,
+        heading_deg=sign * off["heading_deg"],
+        scale=1.0 + sign * (off["scale"] - 1.0),
+    )
+    diagnosis = diagnose(dataset, effects=CONSIDERED, jobs=2)
+    assert diagnosis.verdict == "no_gap"
+    assert not diagnosis.effects
+    # There was a gap before the nuisances were fitted, and nothing else closed it.
+    assert diagnosis.gap.before > 3.0
+    assert diagnosis.gap.after_nuisance_only < 1.1
+
+
+def test_a_camera_that_is_off_by_more_is_the_camera() -> None:
+    dataset = measure(plan(), heading_deg=5.0, scale=1.02, seed=1)
+    diagnosis = diagnose(dataset, effects=CONSIDERED, jobs=2)
+    assert diagnosis.verdict == "explained"
+    assert [effect.name for effect in diagnosis.effects] == ["camera_calibration"]
+    for key, value in (("scale", 1.02), ("heading_deg", 5.0)):
+        interval = diagnosis.effects[0].parameters[key]
+        assert interval.low <= value <= interval.high
+
+
+@pytest.mark.parametrize("divisor", [1, 4])
+def test_another_step_is_no_effect(divisor: int) -> None:
+    diagnosis = diagnose(measure(plan(), divisor=divisor, seed=3), effects=CONSIDERED, jobs=2)
+    assert diagnosis.verdict == "no_gap"
+    assert not diagnosis.effects
+
+
+def test_a_robot_that_left_the_view_is_not_at_rest() -> None:
+    dataset = measure(plan(), seed=4)
+    for name in ("f05", "f10"):
+        dataset = without(dataset, name, slice(14, None))
+    diagnosis = diagnose(dataset, effects=CONSIDERED, jobs=2)
+    assert diagnosis.verdict == "no_gap"
+    floors = {floor.trial: floor for floor in diagnosis.floors}
+    assert floors["f05"].lost == floors["f05"].frames - 14
+    assert floors["f05"].compared < floors["f02"].compared
+    assert any("left the view" in said for said in diagnosis.assumptions)
+
+
+def test_frames_that_are_lost_throughout_a_trial_leave_the_others() -> None:
+    dataset = without(measure(plan(), seed=5), "f05", slice(None))
+    diagnosis = diagnose(dataset, effects=CONSIDERED, jobs=2)
+    assert diagnosis.verdict == "no_gap"
+    (floor,) = (floor for floor in diagnosis.floors if floor.trial == "f05")
+    assert (floor.compared, floor.lost) == (0, floor.frames)
+    assert diagnosis.to_json()
+
+
+def test_a_static_field_alone_is_enough_to_see_that_nothing_is_wrong() -> None:
+    diagnosis = diagnose(measure(plan([("a", UPWARDS, 0.0), ("b", UPWARDS, 5.0)])), effects=CONSIDERED, jobs=2)
+    assert diagnosis.verdict == "no_gap"
