@@ -124,10 +124,12 @@ class Comparison:
         Parameters
         ----------
         effects
-            The hypothesis.
+            The hypothesis; none for the nominal model alone.
         """
-        there = measure_sensitivity(self.simulator, self.readers, effects)
-        self.floors = build_floors(self.readers, [self._nominal_sensitivity, there])
+        around = [self._nominal_sensitivity]
+        if effects:
+            around.append(measure_sensitivity(self.simulator, self.readers, effects))
+        self.floors = build_floors(self.readers, around)
 
     @property
     def count(self) -> int:

@@ -126,8 +126,13 @@ class _Conclusion:
             gap = shrink(self.fitter, nominal, nominal, self.seed)
         tied = ties(comparison, attribution, chosen)
 
+        estimates, shown = self._estimates(chosen, tied), overlays(self.fitter, nominal, self.held_out(chosen), chosen)
+        ranking = tuple(self._ranked(contender) for contender in attribution.contenders)
+        floors, proposed = self._floors(), self._next(chosen, tied, tell)
         tell("where the gap lies", 0, 2)
-        still = attribution.nominal.residual
+        # Where the nominal model parts from the data is seen against the noise around it, not around other hypotheses.
+        comparison.measure_noise_around(())
+        still = comparison.residual(comparison.nominal_paths)
         regions, maps = localise(comparison, still, comparison.nominal_paths)
         wrench = None
         if verdict != "no_gap":
@@ -137,22 +142,21 @@ class _Conclusion:
                 regions = (*regions, *wrench_regions(wrench))
         else:
             regions = ()
-        tell("the next trial", 0, 1)
         return Diagnosis(
             dataset=dataset,
             model=comparison.simulator.model,
             verdict=verdict,
-            effects=self._estimates(chosen, tied),
+            effects=estimates,
             chosen=chosen.effects,
-            ranking=tuple(self._ranked(contender) for contender in attribution.contenders),
+            ranking=ranking,
             gap=gap,
             where=tuple(sorted(regions, key=lambda region: -region.share_of_gap)),
-            next_trials=self._next(chosen, tied),
+            next_trials=proposed,
             ruled_out=self._ruled_out(chosen, tied),
             heat_maps=maps,
             missing_wrench=wrench,
-            overlays=overlays(self.fitter, nominal, self.held_out(chosen), chosen),
-            floors=self._floors(),
+            overlays=shown,
+            floors=floors,
             assumptions=_assumptions(comparison, attribution),
             seed=self.seed,
             seconds=perf_counter() - start,
@@ -185,9 +189,10 @@ class _Conclusion:
             shrink=shrunk,
         )
 
-    def _next(self, chosen: Contender, tied: dict[str, tuple[str, ...]]) -> tuple[NextTrial, ...]:
+    def _next(self, chosen: Contender, tied: dict[str, tuple[str, ...]], tell: OnPhase) -> tuple[NextTrial, ...]:
         if not any(tied.values()):
             return ()
+        tell("the next trial", 0, 1)
         rivals = [chosen]
         for contender in self.attribution.contenders:
             for name, others in tied.items():

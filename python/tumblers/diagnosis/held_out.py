@@ -1,9 +1,8 @@
 """`shrink`: how far the gap shrinks on trials that no fit has seen.
 
 The trials are dealt into folds, alike conditions to different folds; each fold is left out once, and the effects'
-parameters, the camera's heading and scale and the nominal numbers' being off are fitted to the others. Only what
-belongs to a trial alone, its clock and its origin, is fitted in the trial itself. With ρ of `robust_cost` a gap is
-`√(Σρ/n)`.
+parameters are fitted to the others. What is no physics is fitted everywhere within its tolerance: the sensor's nuisances
+and the nominal numbers' being off. With ρ of `robust_cost` a gap is `√(Σρ/n)`.
 """
 
 from __future__ import annotations
@@ -99,7 +98,7 @@ def held_out(fitter: Fitter, contender: Contender) -> HeldOut:
             paths = fitter.comparison.simulator.run([Job(i, hypothesis.effects(point)) for i in fitter.trials])
         else:
             paths = list(fitter.comparison.nominal_paths)
-        residual = fitter.comparison.residual(paths, train)
+        residual = fitter.comparison.residual(paths)
         for i in left_out or fitter.trials:
             residuals[i], points[i] = residual, point
     return HeldOut(tuple(residuals[i] for i in fitter.trials), tuple(points[i] for i in fitter.trials))

@@ -67,6 +67,9 @@ _OBSERVATIONS = {
     "tilt_deg": ("tilt", "degrees"),
 }
 
+# Below this share of the gap an effect is not foretold by trials that were fitted without it.
+_FORETOLD = 0.05
+
 
 def summary(diagnosis: Diagnosis) -> str:
     """Return a diagnosis in plain words for a terminal: the verdict, where, what, how far, ties, next, cautions.
@@ -99,6 +102,13 @@ def headline(diagnosis: Diagnosis) -> str:
         causes = _capital(" and ".join(phrase.cause for phrase in phrases)) + scope
         amounts = " and ".join(phrase.amount.rstrip(",") if len(phrases) > 1 else phrase.amount for phrase in phrases)
         together = ", together," if len(phrases) > 1 else ""
+        if gap.shrink.estimate < _FORETOLD:
+            close = "close" if len(phrases) > 1 else "closes"
+            return (
+                f"{causes}: {amounts}{together} {close} the gap, from {_sigmas(gap.after_nuisance_only)} to "
+                f"{_sigmas(diagnosis.ranking[0].gap)} where it is fitted; the trials that show it are too few for the "
+                "others to foretell it."
+            )
         return f"{causes}: {amounts}{together} {'explain' if len(phrases) > 1 else 'explains'} {_explained(gap)}."
     left = f"the gap is {_sigmas(gap.before)} ({floor})"
     if not phrases:
