@@ -1,8 +1,8 @@
 """`shrink`: how far the gap shrinks on trials that no fit has seen.
 
 The trials are dealt into folds, alike conditions to different folds; each fold is left out once, and the effects'
-parameters are fitted to the others. What is no physics is fitted everywhere within its tolerance: the sensor's nuisances
-and the nominal numbers' being off. With ρ of `robust_cost` a gap is `√(Σρ/n)`.
+parameters are fitted to the others. What is no physics is fitted everywhere within its tolerance: the sensor's
+nuisances and the nominal numbers' being off. With ρ of `robust_cost` a gap is `√(Σρ/n)`.
 """
 
 from __future__ import annotations
