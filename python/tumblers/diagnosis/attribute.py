@@ -179,9 +179,9 @@ def attribute(
                 singles[k] = _refined(fitter, singles[k], seed)
         singles.sort(key=lambda c: c.cost)
     contenders = list(singles)
-    if _mean_square(comparison, singles[0]) > _LEFT:
-        contenders += _pairs(fitter, singles, {h.names[0]: h for h in possible}, tell)
-        contenders.sort(key=lambda c: c.cost)
+    pairs = _pairs(fitter, singles, {h.names[0]: h for h in possible}, tell)
+    if pairs:
+        contenders = sorted([*singles, *pairs], key=lambda c: c.cost)
         tell("a last look at the best", 0, 1)
         comparison.measure_noise_around(contenders[0].effects)
         contenders = _polished(fitter, _judged_again(fitter, contenders), _PAIRS_POLISHED)
@@ -255,7 +255,9 @@ def _pairs(
     tell: OnPhase,
 ) -> list[Contender]:
     ordered = sorted(singles, key=lambda c: c.cost)
-    firsts = [c for c in ordered[:_FIRSTS] if c.cost < _NEAR_BEST * ordered[0].cost]
+    # A second effect shows beside the best one; beside the next best only where the best leaves a gap.
+    wanting = _mean_square(fitter.comparison, ordered[0]) > _LEFT
+    firsts = [c for c in ordered[: _FIRSTS if wanting else 1] if c.cost < _NEAR_BEST * ordered[0].cost]
     found: dict[frozenset[str], Contender] = {}
     for n, first in enumerate(firsts):
         tell("fitting pairs", n, len(firsts))
@@ -264,7 +266,8 @@ def _pairs(
         joined = [first.fit.hypothesis + other for other in others]
         bases = [np.concatenate([first.fit.point, np.zeros(len(other.neutral))]) for other in others]
         scans = fitter.scan(joined, bases, first.residual, first.fit.jacobian)
-        order = np.argsort([points[0][0] for points in scans], kind="stable")[:_SECONDS]
+        costs = [points[0][0] for points in scans]
+        order = [k for k in np.argsort(costs, kind="stable")[:_SECONDS] if costs[k] < first.cost - _CLEAR]
         for k in order:
             names = frozenset(joined[k].names)
             contender = _contender(fitter.fit(joined[k], scans[k][0][1], evaluations=4))
