@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Annotated
@@ -16,7 +16,6 @@ from .errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from .diagnosis.result import Diagnosis
 
 __all__ = ["diagnose"]
 
@@ -58,7 +57,7 @@ def diagnose(
     start = perf_counter()
     with _bar() as on_phase:
         diagnosis = run(measured, effects=names, jobs=jobs, seed=seed, progress=on_phase)
-    _save(diagnosis, out)
+    diagnosis.save(out)
     typer.echo(summary(diagnosis))
     typer.echo(f"\nreport: {out / 'report.html'}\ntime: {perf_counter() - start:.1f} s")
 
@@ -84,17 +83,6 @@ def _effect_names(text: str) -> list[str]:
         else:
             names.append(get(word, "--effects").name)
     return list(dict.fromkeys(names))
-
-
-def _save(diagnosis: Diagnosis, out: Path) -> None:
-    made = not out.exists()
-    try:
-        diagnosis.save(out)
-    except BaseException:
-        if made:
-            with suppress(OSError):
-                out.rmdir()
-        raise
 
 
 @contextmanager

@@ -1,6 +1,11 @@
 """Diagnosis of the gap between a lab's measurements and its nominal model."""
 
+from .attribute import attribute
 from .diagnose import diagnose
+from .held_out import shrink
+from .localise import localise
+from .next_trial import next_trials
 from .result import Diagnosis
+from .wrench import missing_wrench
 
-__all__ = ["Diagnosis", "diagnose"]
+__all__ = ["Diagnosis", "attribute", "diagnose", "localise", "missing_wrench", "next_trials", "shrink"]

@@ -465,8 +465,14 @@ class Diagnosis:
             "report.html": report_html(self).encode(),
         }
         folder = Path(directory)
+        new = not folder.exists()
         folder.mkdir(exist_ok=True)
-        write_files({folder / name: data for name, data in contents.items()})
+        try:
+            write_files({folder / name: data for name, data in contents.items()})
+        except BaseException:
+            if new:
+                folder.rmdir()
+            raise
 
 
 def _interval(value: Interval) -> dict[str, Any]:

@@ -69,6 +69,8 @@ _OBSERVATIONS = {
 
 # Below this share of the gap an effect is not foretold by trials that were fitted without it.
 _FORETOLD = 0.05
+# Where less than this share of the gap is left once the sensor's nuisances are fitted, that is what effects are about.
+_SLIPS = 0.1
 
 
 def summary(diagnosis: Diagnosis) -> str:
@@ -189,6 +191,11 @@ def _capital(text: str) -> str:
 def _explained(gap: Gap) -> str:
     if not isfinite(gap.shrink.estimate):
         return "the gap, though no trial was left to check it on"
+    if gap.after_nuisance_only - gap.noise_floor < _SLIPS * (gap.before - gap.noise_floor):
+        return (
+            f"what the sensor's own slips leave of the gap on trials not fitted, {_sigmas(gap.after_nuisance_only)} "
+            f"that become {_sigmas(gap.after)}"
+        )
     return f"{percent(gap.shrink.estimate)} of the gap on trials not fitted"
 
 
@@ -204,7 +211,9 @@ def _scope(diagnosis: Diagnosis) -> str:
         return ""
     if high >= used[-1]:
         return f", seen from {low:.3g} Hz up"
-    return f", seen up to {high:.3g} Hz" if low <= used[0] else f", seen from {low:.3g} to {high:.3g} Hz"
+    if low <= used[0]:
+        return f", seen up to {high:.3g} Hz"
+    return f", seen at {low:.3g} Hz" if low == high else f", seen from {low:.3g} to {high:.3g} Hz"
 
 
 def _where(diagnosis: Diagnosis) -> str:
