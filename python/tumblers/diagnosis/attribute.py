@@ -26,6 +26,7 @@ from ..effects.base import Effect
 from .comparison import Comparison, Residual
 from .fit import Fit, Fitter, robust_cost
 from .hypothesis import PRIOR_SIGMA, Hypothesis
+from .predictive import is_right, mean_square
 
 __all__ = ["Attribution", "Contender", "attribute"]
 
@@ -39,6 +40,9 @@ _LEFT = 0.95
 # Fits that take so much off the objective are worth another look, so many of them; the search goes on from many more
 # starts where a measurement's mean squared difference stays above this.
 _CLEAR, _POLISHED, _WANTING = 20.0, 3, 0.85
+# Shares of the way from neutral to each end of a range that are tried where nothing explains the gap, for effects with
+# no more parameters than this.
+_GRID, _FEW = (0.1, 0.3, 0.5, 0.7, 0.9, 1.0), 2
 # Effects that lead after the first look are fitted in more steps.
 _LEADING = 6
 # So many neighbouring numbers of a track count as one.
@@ -46,7 +50,7 @@ _ALIKE = 4.0
 # Of equals the one with fewer parameters is preferred, then the one that the catalogue lists first.
 _PER_PARAMETER, _PER_PLACE = 0.15, 0.005
 # How many hypotheses are fitted again from more starts, and with how many, where the first fits leave a gap.
-_REFINED, _MORE_STARTS, _MOST_STARTS = 3, {1: 8, 2: 16}, 16
+_REFINED, _MORE_STARTS, _MOST_STARTS = 2, {1: 8, 2: 16}, 16
 # Of an effect with more parameters than this only where it leads.
 _MANY = 4
 # Shares of the trials' time that are fitted on the way, from so many of the starts.
@@ -164,6 +168,9 @@ def attribute(
         # Where nothing that was looked at is better than neutral, two steps from there suffice.
         evaluations = (6 if cost in leading else 4) if np.any(start) else 2
         singles.append(_contender(fitter.fit(hypothesis, start, evaluations=evaluations)))
+    if singles and not is_right(comparison, min([nominal, *singles], key=lambda c: c.cost).residual):
+        tell("a grid over every range", 0, 1)
+        singles = _searched(fitter, singles)
     if not singles or min(c.cost for c in singles) > nominal.cost - _CLEAR:
         return _ranked([nominal, *singles], comparison, names)
 
@@ -172,7 +179,7 @@ def attribute(
     tell("a second look at the best", 0, 1)
     singles = _polished(fitter, _judged_again(fitter, singles), _POLISHED)
     nominal = _nominal(fitter)
-    if _mean_square(comparison, singles[0]) > _WANTING:
+    if mean_square(comparison, singles[0].residual) > _WANTING:
         for k in range(min(_REFINED, len(singles))):
             tell("more starts for the best", k, _REFINED)
             if k == 0 or len(singles[k].point) <= _MANY:
@@ -218,9 +225,24 @@ def _contender(fit: Fit) -> Contender:
     return Contender(fit.hypothesis.names, fit, fit.residual, fit.cost)
 
 
-def _mean_square(comparison: Comparison, contender: Contender) -> float:
-    values = contender.residual.over(range(len(contender.residual.trials)))
-    return robust_cost(values) / max(comparison.count, 1)
+def _searched(fitter: Fitter, singles: Sequence[Contender]) -> list[Contender]:
+    """Fit effects of few parameters again from a grid over their ranges: a threshold shows only beyond it."""
+    made = list(singles)
+    for k, contender in enumerate(singles):
+        assert contender.fit is not None
+        hypothesis = contender.fit.hypothesis
+        if len(contender.point) > _FEW:
+            continue
+        ends = [(j, end) for j in range(len(contender.point)) for end in (hypothesis.low[j], hypothesis.high[j])]
+        unit = np.eye(len(contender.point))
+        points = [share * end * unit[j] for j, end in ends if end != 0.0 for share in _GRID]
+        residuals = fitter.residuals(hypothesis, points)
+        costs = [fitter.cost(residual, point) for residual, point in zip(residuals, points, strict=True)]
+        best = int(np.argmin(costs))
+        if costs[best] < contender.cost - _CLEAR:
+            other = _contender(fitter.fit(hypothesis, points[best], evaluations=6))
+            made[k] = min(contender, other, key=lambda c: c.cost)
+    return made
 
 
 def _refined(fitter: Fitter, contender: Contender, seed: int) -> Contender:
@@ -256,7 +278,7 @@ def _pairs(
 ) -> list[Contender]:
     ordered = sorted(singles, key=lambda c: c.cost)
     # A second effect shows beside the best one; beside the next best only where the best leaves a gap.
-    wanting = _mean_square(fitter.comparison, ordered[0]) > _LEFT
+    wanting = mean_square(fitter.comparison, ordered[0].residual) > _LEFT
     firsts = [c for c in ordered[: _FIRSTS if wanting else 1] if c.cost < _NEAR_BEST * ordered[0].cost]
     found: dict[frozenset[str], Contender] = {}
     for n, first in enumerate(firsts):
@@ -277,16 +299,23 @@ def _pairs(
 
 
 def _ranked(contenders: Sequence[Contender], comparison: Comparison, effects: Sequence[str]) -> Attribution:
-    outcomes = sum(len(floor.outcome_scale) for floor in comparison.floors)
-    alike = comparison.count / max(outcomes + (comparison.count - outcomes) / _ALIKE, 1.0)
-    dispersion = alike * max(1.0, min(_mean_square(comparison, contender) for contender in contenders))
-    count = max(len(effects), 1)
-    pairs = max(count * (count - 1) // 2, 1)
-    prior = {0: log(_PRIOR[0]), 1: log(_PRIOR[1] / count), 2: log(_PRIOR[2] / pairs)}
+    noted = [len(floor.outcome_scale) for floor in comparison.floors]
+    alike = _ALIKE if comparison.count > sum(noted) else 1.0
+    dispersion = alike * max(1.0, min(mean_square(comparison, contender.residual) for contender in contenders))
+    listed = max(len(effects), 1)
+    prior = {
+        0: log(_PRIOR[0]),
+        1: log(_PRIOR[1] / listed),
+        2: log(_PRIOR[2] / max(listed * (listed - 1) // 2, 1)),
+    }
     place = {name: k for k, name in enumerate(effects)}
     scored = []
     for c in contenders:
-        evidence = -0.5 * c.cost / dispersion + prior[len(c.names)]
+        # Outcomes stand for themselves.
+        outcomes = sum(
+            robust_cost(values[len(values) - count :]) for values, count in zip(c.residual.trials, noted, strict=True)
+        )
+        evidence = -0.5 * (c.cost + (alike - 1.0) * outcomes) / dispersion + prior[len(c.names)]
         evidence -= _PER_PARAMETER * len(c.point) + _PER_PLACE * sum(place[name] for name in c.names)
         if c.fit is not None:
             information = _information(c.fit.jacobian, dispersion) * PRIOR_SIGMA**2

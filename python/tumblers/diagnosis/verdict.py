@@ -1,38 +1,22 @@
-"""Whether there is a gap, whether it is explained, and what cannot be told apart.
-
-The posterior predictive test holds the mean squared difference, over all trials and in the worst one, against what a
-right model gives: the floor is made so that this is below 1.
-"""
+"""Whether there is a gap, whether it is explained, and what cannot be told apart."""
 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .attribute import Attribution, Contender
 from .comparison import Comparison
-from .fit import robust_cost
+from .predictive import is_right, mean_square
 from .result import Gap, Verdict
 
-__all__ = ["judge", "mean_squares", "ties"]
+__all__ = ["judge", "ties"]
 
-# A right model's mean square over all numbers, and in its worst trial.
-_EXPLAINED, _WORST = 1.25, 2.0
-# And on trials that no fit has seen.
+# A right model's mean square on trials that no fit has seen, and how much worse than nominal it may be there.
 _FORETOLD, _NO_WORSE = 1.5, 1.02
 # A gap is called one where the best effects take away more than this share of the noise's variance.
 _LEAST_GAP = 0.01
 # Evidence that is less than this factor apart (ln 20), or predictions that differ by less than this in noise sigmas.
 _TIED, _SAME = 3.0, 0.25
-
-
-def mean_squares(contender: Contender) -> NDArray[np.float64]:
-    """Return Σρ/n of each trial, shape (trials,)."""
-    return np.array([robust_cost(values) / max(len(values), 1) for values in contender.residual.trials])
-
-
-def _mean_square(comparison: Comparison, contender: Contender) -> float:
-    return float(np.average(mean_squares(contender), weights=comparison.sizes))
 
 
 def judge(comparison: Comparison, attribution: Attribution, gap: Gap) -> tuple[Verdict, Contender]:
@@ -48,8 +32,9 @@ def judge(comparison: Comparison, attribution: Attribution, gap: Gap) -> tuple[V
         On trials that the best hypothesis had not seen.
     """
     nominal, best = attribution.nominal, attribution.contenders[0]
-    if _right(comparison, nominal) and (
-        not best.names or _mean_square(comparison, nominal) - _mean_square(comparison, best) < _LEAST_GAP
+    if is_right(comparison, nominal.residual) and (
+        not best.names
+        or mean_square(comparison, nominal.residual) - mean_square(comparison, best.residual) < _LEAST_GAP
     ):
         return "no_gap", nominal
     if not best.names:
@@ -58,14 +43,7 @@ def judge(comparison: Comparison, attribution: Attribution, gap: Gap) -> tuple[V
     foretold = bool(gap.held_out_trials) and (
         gap.after**2 <= _FORETOLD or gap.after <= _NO_WORSE * gap.after_nuisance_only
     )
-    return ("explained" if _right(comparison, best) and foretold else "unexplained"), best
-
-
-def _right(comparison: Comparison, contender: Contender) -> bool:
-    each = mean_squares(contender)
-    # In a trial of few numbers noise alone gives more.
-    worst = _WORST * (1.0 + 2.0 * np.sqrt(2.0 / np.maximum(comparison.sizes, 1)))
-    return bool(_mean_square(comparison, contender) <= _EXPLAINED and np.all(each <= worst))
+    return ("explained" if is_right(comparison, best.residual) and foretold else "unexplained"), best
 
 
 def ties(comparison: Comparison, attribution: Attribution, chosen: Contender) -> dict[str, tuple[str, ...]]:
