@@ -149,6 +149,7 @@ def attribute(
     fitter = Fitter(comparison)
     scenarios = [comparison.simulator.nominal(i) for i in fitter.trials]
     nominal = _nominal(fitter)
+    gap = not is_right(comparison, nominal.residual)
     possible = [Hypothesis.of(kind, scenarios) for kind in kinds]
     possible = [h for h in possible if len(h.starts)]
     names = [h.names[0] for h in possible]
@@ -193,7 +194,13 @@ def attribute(
         comparison.measure_noise_around(contenders[0].effects)
         contenders = _polished(fitter, _judged_again(fitter, contenders), _PAIRS_POLISHED)
         nominal = _nominal(fitter)
-    return _ranked([nominal, *contenders], comparison, names)
+    ranked = _ranked([nominal, *contenders], comparison, names)
+    if gap and not ranked.contenders[0].names:
+        # Around this hypothesis everything is noise, around the nominal model it is not: that is no explanation.
+        comparison.measure_noise_around(())
+        contenders = _judged_again(fitter, contenders)
+        ranked = _ranked([_nominal(fitter), *contenders], comparison, names)
+    return ranked
 
 
 def _nominal(fitter: Fitter) -> Contender:
