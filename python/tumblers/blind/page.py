@@ -22,9 +22,10 @@ def page_of(scores: Scores) -> str:
     versions = ", ".join(scores.versions) or "unknown"
     parts = [
         "# Diagnoses of datasets whose cause is withheld",
-        f"{scores.datasets} datasets drawn from seed {scores.seed}, {scores.diagnosed} diagnosed by version {versions}."
+        f"{scores.drawn} datasets drawn from seed {scores.seed}, {scores.datasets} of them tried, {scores.diagnosed} "
+        f"diagnosed by version {versions}; those not tried do not count below."
         " Every answer was sealed before the diagnosis and its seal checked after it. Made by\n\n"
-        f"```\ntumblers blind make --seed {scores.seed} --count {scores.datasets} --out DIR\n"
+        f"```\ntumblers blind make --seed {scores.seed} --count {scores.drawn} --out DIR\n"
         "tumblers blind run DIR\ntumblers blind score DIR --answers DIR/answers.json --page blind-results.md\n```",
         "The strength of a cause is the root mean square of what it changes in all numbers that were observed, in "
         "standard deviations of their noise, after the sensor's stated tolerances (origin, clock, heading, scale) have "

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from math import inf
 from os import PathLike
 from pathlib import Path
 from statistics import mean, median
 from typing import Any
 
-from ..errors import TumblersError
+from ..errors import InputError, TumblersError
 from .records import Record, read_records
 from .ties import difference_sigma, effect_of
 
@@ -77,6 +77,8 @@ class Scores:
     ----------
     seed, versions, datasets, diagnosed
         What was scored.
+    drawn
+        How many datasets there are, with those that have not been tried.
     confusion
         Truth (an effect, ``none``, ``outside``) to what was named first (an effect or the verdict) to a number, for
         datasets with at most one cause.
@@ -118,6 +120,7 @@ class Scores:
     seconds_longest: float | None
     criteria: tuple[Criterion, ...]
     rows: tuple[Mapping[str, Any], ...]
+    drawn: int
 
     def to_json(self) -> str:
         """Return the scores as JSON."""
@@ -143,9 +146,16 @@ def score(directory: str | PathLike[str], answers: str | PathLike[str]) -> Score
     InputError
         A file that is refused, or an answer that is not the sealed one.
     """
-    seed, records = read_records(directory, answers)
+    seed, drawn = read_records(directory, answers)
+    # A diagnosis that failed counts as wrong, one that has not been tried does not count.
+    records = [record for record in drawn if record.diagnosis is not None or record.version is not None]
+    if not records:
+        raise InputError(
+            "DIR", "no dataset that was diagnosed", "at least one: `tumblers blind run` comes first", directory
+        )
     folder = Path(directory)
-    return score_records(records, seed, lambda record: _tie_sigma(folder / record.dataset, record))
+    scores = score_records(records, seed, lambda record: _tie_sigma(folder / record.dataset, record))
+    return replace(scores, drawn=len(drawn))
 
 
 def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores:
@@ -229,6 +239,7 @@ def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores
         seconds_longest=max(seconds) if seconds else None,
         criteria=criteria,
         rows=tuple(_row(r) for r in records),
+        drawn=len(records),
     )
 
 
