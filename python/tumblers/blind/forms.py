@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import replace
 from math import atan, cbrt, degrees, hypot, inf, pi, radians, sin, sqrt
@@ -28,7 +29,7 @@ def _share(position_m: float) -> float:
     return max(-1.0, min(1.0, position_m / _WORKSPACE_M))
 
 
-class _Scaled(EffectLaw):
+class _Scaled(EffectLaw, ABC):
     """The effect's departure from neutral is scaled on the way."""
 
     every = _EVERY
@@ -43,9 +44,9 @@ class _Scaled(EffectLaw):
         scale = round(self.scale(time_s, state), 2)
         return scaled(self.effect, scale).edit(scenario)
 
+    @abstractmethod
     def scale(self, time_s: float, state: State) -> float:
         """Return how much of the effect acts."""
-        raise NotImplementedError
 
 
 def scaled(effect: Effect, scale: float) -> Effect:
