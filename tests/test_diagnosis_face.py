@@ -608,7 +608,7 @@ def test_the_command_writes_the_files_and_prints_the_summary(
     assert f"report: {out / 'report.html'}" in said.out
     assert said.err == ""
     assert {file.name for file in out.iterdir()} == {"diagnosis.json", "effects.toml", "report.html"}
-    asked = {"effects": ["draft_angle", "size_error"], "jobs": 2, "seed": 5, "progress": False}
+    asked = {"effects": ["draft_angle", "size_error"], "jobs": 2, "seed": 5, "progress": True}
     assert computation.asked == asked
 
 

@@ -3,19 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from .errors import InputError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
 
 __all__ = ["diagnose"]
 
@@ -55,8 +49,7 @@ def diagnose(
     from .diagnosis.words import summary
 
     start = perf_counter()
-    with _bar() as on_phase:
-        diagnosis = run(measured, effects=names, jobs=jobs, seed=seed, progress=on_phase)
+    diagnosis = run(measured, effects=names, jobs=jobs, seed=seed, progress=True)
     diagnosis.save(out)
     typer.echo(summary(diagnosis))
     typer.echo(f"\nreport: {out / 'report.html'}\ntime: {perf_counter() - start:.1f} s")
@@ -83,19 +76,3 @@ def _effect_names(text: str) -> list[str]:
         else:
             names.append(get(word, "--effects").name)
     return list(dict.fromkeys(names))
-
-
-@contextmanager
-def _bar() -> Iterator[Callable[[str, int, int], None] | bool]:
-    """Give a bar on standard error that bears the phase's name, where that is a terminal."""
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
-
-    console = Console(stderr=True)
-    if not console.is_terminal:
-        yield False
-        return
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=console, transient=True) as bar:
-        task = bar.add_task("starting", total=None)
-        yield lambda phase, done, total: bar.update(task, description=phase, completed=done, total=total)

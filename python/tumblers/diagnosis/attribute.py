@@ -28,7 +28,7 @@ from .fit import Fit, Fitter, robust_cost
 from .hypothesis import PRIOR_SIGMA, Hypothesis
 from .predictive import is_right, mean_square
 
-__all__ = ["Attribution", "Contender", "attribute"]
+__all__ = ["Attribution", "Contender", "OnPhase", "attribute"]
 
 Floats = NDArray[np.float64]
 OnPhase = Callable[[str, int, int], None]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from time import perf_counter
 
@@ -14,7 +14,7 @@ from ..effects.base import Effect
 from ..effects.catalogue import CATALOGUE, get
 from ..errors import InputError, show
 from ..version import __version__
-from .attribute import Attribution, Contender, attribute
+from .attribute import Attribution, Contender, OnPhase, attribute
 from .comparison import Comparison
 from .estimate import intervals, samples
 from .fit import Fitter, robust_cost
@@ -38,7 +38,6 @@ from .wrench import missing_wrench, wrench_regions
 __all__ = ["OnPhase", "diagnose"]
 
 Floats = NDArray[np.float64]
-OnPhase = Callable[[str, int, int], None]
 
 # Hypotheses whose gap is measured on trials left out, and how probable they must be (the best is always measured).
 _MEASURED, _PROBABLE = 3, 0.02
@@ -261,7 +260,7 @@ def _assumptions(comparison: Comparison, attribution: Attribution) -> tuple[str,
         f"{100.0 * sensor.scale_tolerance:g} %. Larger ones are the effect camera_calibration.",
         f"The nominal numbers may be off by these standard deviations: {nominal}.",
         "What halving the step changes is part of the noise.",
-        "In a trial that is left out, the sensor's nuisances and the nominal numbers are still fitted; effects are not.",
+        "In a trial left out, the sensor's nuisances and the nominal numbers are still fitted; effects are not.",
         f"Every {attribution.dispersion:.3g} measured numbers count as one in probabilities and intervals.",
         "Before anything is fitted, 40 % for no gap, 45 % for one effect, 15 % for two; no more than two are tried.",
         "Evidence is Laplace's approximation; intervals are 90 % profiles.",
