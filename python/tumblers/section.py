@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, fields
 from difflib import get_close_matches
@@ -12,7 +13,16 @@ from .errors import InputError, show
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
-__all__ = ["as_section", "known_keys", "read_section", "require_table", "required_keys", "write_entry", "write_section"]
+__all__ = [
+    "as_section",
+    "known_keys",
+    "read_section",
+    "require_table",
+    "required_keys",
+    "write_entry",
+    "write_section",
+    "write_value",
+]
 
 T = TypeVar("T", bound="DataclassInstance")
 
@@ -80,15 +90,21 @@ def write_entry(name: str, table: Mapping[str, object]) -> str:
 
 
 def _titled(title: str, table: Mapping[str, object]) -> str:
-    return "\n".join([title, *(f"{key} = {_toml(value)}" for key, value in table.items())]) + "\n"
+    return "\n".join([title, *(f"{key} = {write_value(value)}" for key, value in table.items())]) + "\n"
 
 
-def _toml(value: object) -> str:
+def write_value(value: object) -> str:
+    """Return a truth value, a number, a word, a list or an inline table of such as TOML."""
     match value:
+        case bool():
+            return "true" if value else "false"
         case str():
-            return f'"{value}"'
+            # Printable text needs no other escapes than those of JSON.
+            return json.dumps(value, ensure_ascii=False)
         case float():
             return repr(value)
         case tuple() | list():
-            return f"[{', '.join(_toml(entry) for entry in value)}]"
+            return f"[{', '.join(write_value(entry) for entry in value)}]"
+        case Mapping():
+            return f"{{ {', '.join(f'{key} = {write_value(entry)}' for key, entry in value.items())} }}"
     raise TypeError(f"no TOML for {value!r}")

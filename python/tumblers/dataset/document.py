@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import re
-from collections.abc import Mapping
 from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..atomic import write_files
 from ..field import field_to_table
-from ..section import as_section, write_section
+from ..section import as_section, write_entry, write_section, write_value
 from .track_csv import write_track_csv
 
 if TYPE_CHECKING:
@@ -74,7 +72,7 @@ def _to_toml(dataset: Dataset, names: list[str], version: str) -> str:
     model = {name: getattr(dataset.model, name) for name in dataset.model_given}
     return "\n".join(
         [
-            f"format = {_toml(version)}\ntitle = {_toml(dataset.title)}\n",
+            f"format = {write_value(version)}\ntitle = {write_value(dataset.title)}\n",
             write_section("robot", dataset.robot.to_table()),
             write_section("substrate", as_section(dataset.substrate)),
             *([write_section("model", model)] if model else []),
@@ -91,20 +89,4 @@ def _trial(trial: LabTrial, name: str) -> str:
         table["track"] = name
     if trial.outcome is not None:
         table["outcome"] = as_section(trial.outcome)
-    return "\n".join(["[[trial]]", *(f"{key} = {_toml(value)}" for key, value in table.items())]) + "\n"
-
-
-def _toml(value: object) -> str:
-    match value:
-        case bool():
-            return "true" if value else "false"
-        case str():
-            # Printable text needs no other escapes than those of JSON.
-            return json.dumps(value, ensure_ascii=False)
-        case float():
-            return repr(value)
-        case tuple():
-            return f"[{', '.join(_toml(entry) for entry in value)}]"
-        case Mapping():
-            return f"{{ {', '.join(f'{key} = {_toml(entry)}' for key, entry in value.items())} }}"
-    raise TypeError(f"no TOML for {value!r}")
+    return write_entry("trial", table)

@@ -250,13 +250,8 @@ def _floor(reader: Reader, around: Sequence[Sensitivity]) -> Floor:
     time = np.maximum(observed.time_s, 0.0)
     whiten: dict[str, Floats] = {}
     valid: dict[str, NDArray[np.bool_]] = {}
-    lost = np.zeros(len(time), dtype=bool)
     for name in observed.channels:
-        source = observed.values.get(name)
-        gone = lost if source is None else ~np.isfinite(source)
-        if source is None and observed.orientation is not None:
-            gone = np.asarray(~np.isfinite(observed.orientation).all(axis=1))
-        valid[name] = np.asarray(~gone)
+        valid[name] = observed.found(name)
         t = time[valid[name]]
         covariance = np.eye(len(t)) * observed.noise[name] ** 2
         for each in around if len(t) else ():

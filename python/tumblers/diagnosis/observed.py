@@ -62,6 +62,13 @@ class Observed:
         turned = () if self.orientation is None else ("tilt", "heading", "twist")
         return tuple(name for name in CHANNELS if name in self.values or name in turned)
 
+    def found(self, channel: str) -> NDArray[np.bool_]:
+        """Return in which frames a channel was not lost, shape (n,)."""
+        if channel in self.values:
+            return np.isfinite(self.values[channel])
+        assert self.orientation is not None
+        return np.asarray(np.isfinite(self.orientation).all(axis=1))
+
 
 def observe(dataset: Dataset) -> tuple[Observed, ...]:
     """Return what was measured in each trial of a dataset.

@@ -6,17 +6,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .attribute import Contender
+from .comparison import Comparison
 from .fit import Fitter
 from .held_out import HeldOut
 from .pose import Path, body_axis, heading_of, tilt_of
-from .reading import GLOBAL
+from .reading import seen_by
 from .result import Overlay
 from .simulator import Job
 
 __all__ = ["overlays"]
 
 Floats = NDArray[np.float64]
-assert GLOBAL == ("heading_rad", "scale")
 
 
 def overlays(fitter: Fitter, nominal: HeldOut, chosen: HeldOut, contender: Contender) -> tuple[Overlay, ...]:
@@ -76,20 +76,15 @@ def _shown(name: str, values: Floats) -> Floats:
     return np.degrees(values) if name in ("tilt", "heading") else values
 
 
-def _read(comparison: object, trial: int, path: Path, held: HeldOut) -> dict[str, Floats]:
-    from .comparison import Comparison
-
-    assert isinstance(comparison, Comparison)
+def _read(comparison: Comparison, trial: int, path: Path, held: HeldOut) -> dict[str, Floats]:
     residual = held.residuals[trial]
-    seen = comparison.readers[trial].observed
-    local, (heading, scale) = residual.local[trial], residual.camera
-    position, orientation = path.at(seen.time_s + local[0])
-    c, s = np.cos(heading), np.sin(heading)
+    time = comparison.readers[trial].observed.time_s
+    position, orientation = seen_by(path, time, residual.local[trial], residual.camera)
     axis = body_axis(orientation)
     return {
-        "x": (1.0 + scale) * (c * position[:, 0] - s * position[:, 1]) + local[1],
-        "y": (1.0 + scale) * (s * position[:, 0] + c * position[:, 1]) + local[2],
+        "x": position[:, 0],
+        "y": position[:, 1],
         "z": position[:, 2],
         "tilt": np.degrees(tilt_of(axis)),
-        "heading": np.degrees(np.angle(np.exp(1j * (heading_of(axis) + heading)))),
+        "heading": np.degrees(heading_of(axis)),
     }

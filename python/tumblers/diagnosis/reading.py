@@ -13,23 +13,20 @@ frame: about x it is a tilt, about z a heading, about y a twist.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import cos, log, sin
+from math import degrees, log
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..camera import Camera
 from ..field import RotatingField
 from ..scenario import Scenario
 from .observed import Observed
 from .pose import Path, body_axis, heading_of, relative_turn, tilt_of
 
-__all__ = ["GLOBAL", "LOCAL", "Reader", "climbed"]
+__all__ = ["Reader", "climbed", "seen_by"]
 
 Floats = NDArray[np.float64]
-
-# Nuisances of one trial (clock, origin) and of the camera (heading, scale).
-LOCAL = ("time_offset_s", "origin_x_m", "origin_y_m")
-GLOBAL = ("heading_rad", "scale")
 
 # Share of the way without slip from which a slope counts as climbed, and how blurred that border is.
 _CLIMBED = 0.1
@@ -82,21 +79,10 @@ class Reader:
         seen = self.observed
         if not len(seen.time_s):
             return {}
-        position, orientation = path.at(seen.time_s + local[0])
-        out: dict[str, Floats] = {}
-        c, s, scale = cos(camera[0]), sin(camera[0]), 1.0 + camera[1]
-        x, y = position[:, 0], position[:, 1]
-        model = {
-            "x": scale * (c * x - s * y) + local[1],
-            "y": scale * (s * x + c * y) + local[2],
-            "z": position[:, 2],
-        }
-        for name, predicted in model.items():
-            if name in seen.values:
-                out[name] = seen.values[name] - predicted
+        position, orientation = seen_by(path, seen.time_s, local, camera)
+        out = {name: seen.values[name] - position[:, k] for k, name in enumerate("xyz") if name in seen.values}
         if seen.orientation is not None:
-            turned = _about_z(orientation, camera[0])
-            error = relative_turn(turned, seen.orientation)
+            error = relative_turn(orientation, seen.orientation)
             out["tilt"], out["twist"], out["heading"] = error[:, 0], error[:, 1], error[:, 2]
         elif "tilt" in seen.values or "heading" in seen.values:
             axis = body_axis(orientation)
@@ -105,7 +91,7 @@ class Reader:
                 out["tilt"] = seen.values["tilt"] - tilt
             if "heading" in seen.values:
                 # The projection of an axis that stands upright points nowhere.
-                wrong = seen.values["heading"] - heading_of(axis) - camera[0]
+                wrong = seen.values["heading"] - heading_of(axis)
                 out["heading"] = np.arctan2(np.sin(wrong), np.cos(wrong)) * np.cos(tilt)
         return out
 
@@ -132,18 +118,14 @@ class Reader:
         terms: dict[str, float] = {}
         if outcome is None:
             return terms
-        ends, _ = path.at(np.array([0.0, self.duration_s]))
-        way = float(ends[1, 1] - ends[0, 1])
+        said = self.read_outcomes(path)
         if outcome.mean_speed_m_per_s is not None and outcome.sigma_m_per_s is not None:
-            speed = way * (1.0 + camera[1]) / self.duration_s
+            speed = said["mean_speed_m_per_s"] * (1.0 + camera[1])
             terms["mean_speed"] = (outcome.mean_speed_m_per_s - speed) / outcome.sigma_m_per_s
         if outcome.tilt_deg is not None and outcome.sigma_deg is not None:
-            rest = np.linspace((1.0 - _REST_SHARE) * self.duration_s, self.duration_s, 8)
-            tilt = float(np.degrees(np.mean(tilt_of(body_axis(path.at(rest)[1])))))
-            terms["tilt"] = (outcome.tilt_deg - tilt) / outcome.sigma_deg
+            terms["tilt"] = (outcome.tilt_deg - said["tilt_deg"]) / outcome.sigma_deg
         if outcome.climbs is not None:
-            share = way / self.level_way_m if self.level_way_m > 0.0 else float(np.sign(way))
-            terms["climbs"] = climbed(share, outcome.climbs)
+            terms["climbs"] = climbed(said["climbed_share"], outcome.climbs)
         return terms
 
     def read_outcomes(self, path: Path) -> dict[str, float]:
@@ -152,13 +134,16 @@ class Reader:
         way = float(ends[1, 1] - ends[0, 1])
         rest = np.linspace((1.0 - _REST_SHARE) * self.duration_s, self.duration_s, 8)
         return {
-            "climbed_share": way / self.level_way_m if self.level_way_m > 0.0 else 0.0,
+            "climbed_share": way / self.level_way_m if self.level_way_m > 0.0 else float(np.sign(way)),
             "mean_speed_m_per_s": way / self.duration_s,
             "tilt_deg": float(np.degrees(np.mean(tilt_of(body_axis(path.at(rest)[1]))))),
         }
 
     def nuisance_columns(self, path: Path, local: Floats, camera: Floats) -> dict[str, Floats]:
-        """Return the differences' derivatives by the nuisances, by channel, shape (n, 5): `LOCAL`, then `GLOBAL`."""
+        """Return the differences' derivatives by the nuisances, by channel, shape (n, 5).
+
+        By the trial's clock and origin (x, y) first, then by the camera's heading and scale.
+        """
         here = self.differences(path, local, camera)
         later = self.differences(path, local + np.array([_TIME_STEP_S, 0.0, 0.0]), camera)
         position, orientation = path.at(self.observed.time_s + local[0])
@@ -201,10 +186,25 @@ def climbed(share: float, climbs: bool) -> float:
     return (1.0 if climbs else -1.0) * float(np.sqrt(max(loss, 0.0)))
 
 
-def _about_z(orientation: Floats, angle: float) -> Floats:
-    c, s = cos(0.5 * angle), sin(0.5 * angle)
-    w, x, y, z = orientation.T
-    return np.stack([c * w - s * z, c * x - s * y, c * y + s * x, c * z + s * w], axis=1)
+def seen_by(path: Path, time_s: Floats, local: Floats, camera: Floats) -> tuple[Floats, Floats]:
+    """Return the positions (n, 3), m, and orientations (n, 4) that a sensor with these nuisances reads at times (n,).
+
+    Parameters
+    ----------
+    path
+        The model's.
+    time_s
+        What the sensor's clock says, s.
+    local
+        Clock (s) and origin (x, y in m), shape (3,).
+    camera
+        Heading (rad) and scale, shape (2,).
+    """
+    position, orientation = path.at(time_s + local[0])
+    seen = Camera(scale=1.0 + float(camera[1]), heading_deg=degrees(camera[0]))
+    position = seen.seen_position(position)
+    position[:, :2] += local[1:]
+    return position, seen.seen_orientation(orientation)
 
 
 def _upward(orientation: Floats) -> Floats:
