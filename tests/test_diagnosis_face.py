@@ -19,11 +19,11 @@ from tumblers import Cuboid, InputError, Model, Robot, RotatingField, StaticFiel
 from tumblers.commands import run
 from tumblers.dataset import Dataset, LabTrial, Outcome, Sensor, Track
 from tumblers.diagnosis import plots
+from tumblers.diagnosis.diagnosis import Diagnosis
 from tumblers.diagnosis.phrase import phrase_of
 from tumblers.diagnosis.quantity import percent, rounded, with_interval
 from tumblers.diagnosis.report import report_html
 from tumblers.diagnosis.result import (
-    Diagnosis,
     EffectEstimate,
     Gap,
     HeatMap,
@@ -627,7 +627,7 @@ def test_what_fails_or_is_interrupted_leaves_nothing(
         assert command(monkeypatch, tmp_path / "data", "--out", tmp_path / "out") == status
         assert sorted(tmp_path.rglob("*")) == before
         Computation(monkeypatch, small())
-        monkeypatch.setattr("tumblers.diagnosis.result.write_files", full)
+        monkeypatch.setattr("tumblers.diagnosis.diagnosis.write_files", full)
 
 
 def test_a_gap_in_most_trials_is_counted_rather_than_listed() -> None:

@@ -26,7 +26,7 @@ from .version import __version__
 if TYPE_CHECKING:
     from . import blind
     from .diagnosis.diagnose import diagnose
-    from .diagnosis.result import Diagnosis
+    from .diagnosis.diagnosis import Diagnosis
 
 __all__ = [
     "DRIVES",

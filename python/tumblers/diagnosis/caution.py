@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from math import isfinite
 
+from .diagnosis import Diagnosis
 from .phrase import meaning_of, title_of
 from .plausible import neutral_values, plausible_ranges
 from .quantity import percent
-from .result import Diagnosis
 
 __all__ = ["cautions"]
 

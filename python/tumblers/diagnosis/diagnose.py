@@ -16,6 +16,7 @@ from ..errors import InputError, show
 from ..version import __version__
 from .attribute import Attribution, Contender, OnPhase, attribute
 from .comparison import Comparison
+from .diagnosis import Diagnosis
 from .estimate import intervals, samples
 from .fit import Fitter, robust_cost
 from .floor import TOLERANCES
@@ -23,14 +24,7 @@ from .held_out import HeldOut, folds, held_out, shrink
 from .localise import localise
 from .next_trial import next_trials
 from .overlay import overlays
-from .result import (
-    Diagnosis,
-    EffectEstimate,
-    Interval,
-    NextTrial,
-    RankedHypothesis,
-    TrialFloor,
-)
+from .result import EffectEstimate, Interval, NextTrial, RankedHypothesis, TrialFloor
 from .simulator import Simulator
 from .verdict import judge, ties
 from .wrench import missing_wrench, wrench_regions

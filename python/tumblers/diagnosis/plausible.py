@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..effects.catalogue import CATALOGUE
-from .result import Diagnosis
+from .diagnosis import Diagnosis
 
 __all__ = ["neutral_values", "plausible_ranges"]
 

@@ -6,6 +6,7 @@ from html import escape
 from math import isfinite
 
 from .condition import condition_of
+from .diagnosis import Diagnosis
 from .page import bar, data_table, figure, grid, listed, page, section, text
 from .phrase import meaning_of, title_of, unit_of
 from .plausible import plausible_ranges
@@ -16,7 +17,6 @@ from .plots.svg import WIDTH_IN, svg_bytes
 from .quantity import handy_unit, percent, rounded, sigmas, with_interval
 from .report_trials import floor_part, next_part, overlay_part
 from .report_where import where_part, wrench_part
-from .result import Diagnosis
 from .words import headline, points, set_words
 
 __all__ = ["report_html"]

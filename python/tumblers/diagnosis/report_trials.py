@@ -7,12 +7,13 @@ from math import isfinite
 
 from ..dataset import LabTrial
 from .condition import condition_of, condition_of_table
+from .diagnosis import Diagnosis
 from .page import data_table, figure, grid, listed, text
 from .phrase import title_of
 from .plots.overlay import plot_overlay
 from .plots.svg import WIDTH_IN, svg_bytes
 from .quantity import percent, plain, rounded, sigmas
-from .result import Diagnosis, NextTrial
+from .result import NextTrial
 from .words import observation_words, reason_words, set_words
 
 __all__ = ["floor_part", "next_part", "overlay_part"]

@@ -6,12 +6,12 @@ from html import escape
 
 import numpy as np
 
+from .diagnosis import Diagnosis
 from .page import bar, data_table, figure, grid, text
 from .plots.heat_map import plot_heat_map
 from .plots.svg import WIDTH_IN, svg_bytes
 from .plots.wrench import By, averages, plot_wrench
 from .quantity import percent, plain, sigmas, with_sigma
-from .result import Diagnosis
 from .words import region_words
 
 __all__ = ["where_part", "wrench_part"]

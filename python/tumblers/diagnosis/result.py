@@ -1,30 +1,15 @@
-"""`Diagnosis` and its parts: what a diagnosis says, and its JSON format ``tumblers-diagnosis/1``."""
+"""The parts of a diagnosis."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from os import PathLike
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from dataclasses import dataclass
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..atomic import write_files
-from ..dataset import Dataset
-from ..effects.base import Effect
-from ..model import Model
-from ..scenario import Scenario
-from ..section import write_entry
-
-if TYPE_CHECKING:
-    from .plots import Figures
-
 __all__ = [
-    "FORMAT",
-    "Diagnosis",
     "EffectEstimate",
     "Gap",
     "HeatMap",
@@ -38,7 +23,6 @@ __all__ = [
     "Verdict",
 ]
 
-FORMAT = "tumblers-diagnosis/1"
 Verdict = Literal["no_gap", "explained", "unexplained"]
 Floats = NDArray[np.float64]
 
@@ -287,217 +271,3 @@ class TrialFloor:
     frames: int
     lost: int
     compared: int
-
-
-@dataclass(frozen=True, eq=False)
-class Diagnosis:
-    """Where model and measurement part, which effect causes it, and how far the gap shrinks once it is added.
-
-    Attributes
-    ----------
-    dataset
-        What was diagnosed.
-    model
-        The model's switches that were used.
-    verdict
-        ``no_gap``, ``explained`` or ``unexplained``.
-    effects
-        The chosen set; empty for ``no_gap``.
-    chosen
-        The same as effects of the catalogue, ready to be added to a scenario.
-    ranking
-        Every hypothesis that was fitted, the best first.
-    gap
-        Before and after, on trials that no fit has seen.
-    where
-        Regions of the gap, the greatest share first.
-    next_trials
-        Trials that would tell tied effects apart, the best first.
-    ruled_out
-        Effect to the trial (its id) that speaks most against it.
-    heat_maps, missing_wrench, overlays, floors
-        What the report draws.
-    assumptions
-        Sentences.
-    seed, seconds, version
-        Of the computation.
-    """
-
-    dataset: Dataset
-    model: Model
-    verdict: Verdict
-    effects: tuple[EffectEstimate, ...]
-    chosen: tuple[Effect, ...]
-    ranking: tuple[RankedHypothesis, ...]
-    gap: Gap
-    where: tuple[Region, ...]
-    next_trials: tuple[NextTrial, ...]
-    ruled_out: Mapping[str, str]
-    heat_maps: tuple[HeatMap, ...]
-    missing_wrench: MissingWrench | None
-    overlays: tuple[Overlay, ...]
-    floors: tuple[TrialFloor, ...]
-    assumptions: tuple[str, ...]
-    seed: int
-    seconds: float
-    version: str
-
-    def scenario(self, trial: str, step_s: float | None = None) -> Scenario:
-        """Return a trial's scenario with the diagnosed effects in it.
-
-        Parameters
-        ----------
-        trial
-            Its id.
-        step_s
-            Step, s; the one that the diagnosis used if None.
-
-        Raises
-        ------
-        InputError
-            No such trial.
-        """
-        lab = self.dataset.trial(trial)
-        floor = next(floor for floor in self.floors if floor.trial == trial)
-        base = lab.scenario(self.dataset, floor.step_s if step_s is None else step_s, model=self.model)
-        return replace(base, effects=self.chosen)
-
-    @property
-    def plots(self) -> Figures:
-        """Figures of the parts, each drawn on axes of one's own or on new ones."""
-        from .plots import Figures
-
-        return Figures(self)
-
-    def effects_toml(self) -> str:
-        """Return the chosen effects as ``[[effect]]`` tables, to be pasted into a scenario."""
-        return "\n".join(write_entry("effect", effect.to_table()) for effect in self.chosen)
-
-    def to_json(self) -> str:
-        """Return the diagnosis as ``tumblers-diagnosis/1``."""
-        gap = self.gap
-        table: dict[str, Any] = {
-            "format": FORMAT,
-            "verdict": self.verdict,
-            "effects": [
-                {
-                    "name": effect.name,
-                    "probability": effect.probability,
-                    "parameters": {key: _interval(value) for key, value in effect.parameters.items()},
-                    "confounded_with": list(effect.confounded_with),
-                }
-                for effect in self.effects
-            ],
-            "ranking": [
-                {
-                    "effects": list(ranked.effects),
-                    "probability": ranked.probability,
-                    "held_out_gap": ranked.held_out_gap,
-                    "shrink": ranked.shrink,
-                    "gap": ranked.gap,
-                    "log_evidence": ranked.log_evidence,
-                }
-                for ranked in self.ranking
-            ],
-            "gap": {
-                "unit": "noise sigmas",
-                "noise_floor": gap.noise_floor,
-                "before": gap.before,
-                "after_nuisance_only": gap.after_nuisance_only,
-                "after": gap.after,
-                "shrink": {"estimate": gap.shrink.estimate, "low": gap.shrink.low, "high": gap.shrink.high},
-                "held_out_trials": list(gap.held_out_trials),
-                "by_trial": {
-                    trial: dict(zip(("before", "after_nuisance_only", "after"), values, strict=True))
-                    for trial, values in gap.by_trial.items()
-                },
-            },
-            "where": [_region(region) for region in self.where],
-            "next_trials": [
-                {
-                    "why": proposed.why,
-                    "trial": dict(proposed.trial),
-                    "information_bits": proposed.information_bits,
-                    "predictions": {
-                        effect: {kind: {"mean": mean, "sigma": sigma} for kind, (mean, sigma) in said.items()}
-                        for effect, said in proposed.predictions.items()
-                    },
-                }
-                for proposed in self.next_trials
-            ],
-            "ruled_out": dict(self.ruled_out),
-            "assumptions": list(self.assumptions),
-            "trials": [
-                {
-                    "trial": floor.trial,
-                    "step_s": floor.step_s,
-                    "numerical_sigmas": floor.numerical_sigmas,
-                    "tolerance_sigmas": floor.tolerance_sigmas,
-                    "frames": floor.frames,
-                    "lost": floor.lost,
-                    "compared": floor.compared,
-                }
-                for floor in self.floors
-            ],
-            "seed": self.seed,
-            "tumblers_version": self.version,
-        }
-        return json.dumps(_plain(table), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
-
-    def save(self, directory: str | PathLike[str]) -> None:
-        """Write ``diagnosis.json``, ``effects.toml`` and ``report.html`` into a folder, all or none.
-
-        Parameters
-        ----------
-        directory
-            The folder, made if missing; its parent must exist.
-
-        Raises
-        ------
-        OSError
-            The folder cannot be made or written to, or the disk is full.
-        """
-        from .report import report_html
-
-        contents = {
-            "diagnosis.json": self.to_json().encode(),
-            "effects.toml": self.effects_toml().encode(),
-            "report.html": report_html(self).encode(),
-        }
-        folder = Path(directory)
-        new = not folder.exists()
-        folder.mkdir(exist_ok=True)
-        try:
-            write_files({folder / name: data for name, data in contents.items()})
-        except BaseException:
-            if new:
-                folder.rmdir()
-            raise
-
-
-def _interval(value: Interval) -> dict[str, Any]:
-    return {"estimate": value.estimate, "low": value.low, "high": value.high, "identified": value.identified}
-
-
-def _region(region: Region) -> dict[str, Any]:
-    place: dict[str, Any] = {"axis": region.axis}
-    if region.value is None:
-        place |= {"low": region.low, "high": region.high}
-    else:
-        place["value"] = region.value
-    return place | {"share_of_gap": region.share_of_gap, "sigmas": region.sigmas}
-
-
-def _plain(value: Any) -> Any:
-    """Plain JSON values: a number that is not finite has no place in JSON and becomes null."""
-    if isinstance(value, Mapping):
-        return {str(key): _plain(entry) for key, entry in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(entry) for entry in value]
-    if isinstance(value, np.bool_ | bool):
-        return bool(value)
-    if isinstance(value, np.integer):
-        return int(value)
-    if isinstance(value, np.floating | float):
-        return float(value) if np.isfinite(value) else None
-    return value

@@ -13,9 +13,10 @@ from ..effects.catalogue import CATALOGUE
 from ..field import RotatingField
 from .caution import cautions
 from .condition import condition_of, condition_of_table
+from .diagnosis import Diagnosis
 from .phrase import meaning_of, phrase_of, title_of, unit_of
 from .quantity import handy_unit, percent, rounded, sigmas, with_interval, with_sigma
-from .result import Diagnosis, EffectEstimate, Gap, NextTrial, Region
+from .result import EffectEstimate, Gap, NextTrial, Region
 
 __all__ = ["headline", "observation_words", "points", "reason_words", "region_words", "set_words", "summary"]
 

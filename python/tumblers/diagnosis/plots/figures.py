@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from ...errors import InputError, show
 from ...plots.style import figure_or_new
-from ..result import Diagnosis
+from ..diagnosis import Diagnosis
 from .gap import plot_gap
 from .heat_map import plot_heat_map
 from .overlay import plot_overlay
