@@ -1,0 +1,157 @@
+"""The report and its figures."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+from matplotlib.figure import Figure
+
+from tumblers import InputError
+from tumblers.diagnosis import plots
+from tumblers.diagnosis.diagnosis import Diagnosis
+from tumblers.diagnosis.report import report_html
+from tumblers.diagnosis.result import (
+    Region,
+)
+from tumblers.diagnosis.words import headline
+
+from .example import lab, made, no_gap, outcomes_only, small, wrench
+
+
+class Reader(HTMLParser):
+    """Keeps what a page shows, what it would run and what it would load, and that every tag is closed."""
+
+    VOID = ("meta", "img", "br")
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.words, self.tags, self.open, self.loads, self.styles = "", [], [], [], []
+        self.feed(page)
+        self.close()
+        assert self.open == []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        self.loads += [value or "" for name, value in attrs if name in ("src", "href", "action", "data")]
+        assert not any(name.startswith("on") for name, _ in attrs)
+        if tag not in self.VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        if "style" not in self.open:
+            self.words += data
+
+
+@pytest.fixture(scope="module")
+def page() -> str:
+    return report_html(made())
+
+
+def test_the_report_is_self_contained_and_has_every_part(page: str) -> None:
+    read = Reader(page)
+    assert "script" not in read.tags
+    assert all(load.startswith(("data:image/svg+xml;base64,", "#")) for load in read.loads)
+    assert re.findall(r"https?://", re.sub(r'src="data:[^"]*"', "", page)) == []
+    words = " ".join(read.words.split())
+    for part in (
+        headline(made()),
+        "How far",
+        "Where",
+        "The missing wrench",
+        "What: the ranking",
+        "Parameters",
+        "Before and after",
+        "Ties and the next trial",
+        "The noise floor",
+        "Assumptions",
+        "The nominal mass, magnetization and friction are right to within 0.5 %.",
+        "tumblers 0.2.0, seed 0",
+        "gradient_T_per_m = [0.0004, 0.0482, 0.01]",
+        "stray field gradient + substrate tilt",
+        "240 ± 15 nN",
+        "mean speed 31.2 ± 0.4 mm/s",
+        "climbs with 97 % probability",
+        "250 µs",
+        "0.0441 to 0.0522 T/m",
+    ):
+        assert part in words
+    assert "nan" not in words.lower()
+
+
+def test_the_same_answer_is_the_same_report_whatever_the_time_it_took() -> None:
+    assert report_html(small()) == report_html(small(seconds=1.0))
+
+
+@pytest.mark.parametrize("diagnosis", [no_gap(), outcomes_only(), small(floors=(), assumptions=(), where=())])
+def test_a_report_without_some_parts_is_whole(diagnosis: Diagnosis) -> None:
+    read = Reader(report_html(diagnosis))
+    assert " nan" not in read.words.lower()
+    assert headline(diagnosis) in read.words
+
+
+def test_what_a_user_wrote_is_shown_and_never_run() -> None:
+    evil = '<script>alert("&")</script>'
+    data = lab(title=evil)
+    odd = '<img src=x onerror=y> $x$ $\\frac{ "日本'
+    trials = (replace(data.trials[0], id=odd), *data.trials[1:])
+    known = made()
+    diagnosis = made(
+        dataset=replace(data, trials=trials),
+        overlays=(replace(known.overlays[0], trial=odd),),
+        missing_wrench=None,
+        floors=(replace(known.floors[0], trial=odd), *known.floors[1:]),
+        gap=replace(known.gap, by_trial={odd: (3.0, 2.0, 1.0)}),
+        where=(Region("trial", 0.9, value=odd),),
+        heat_maps=(replace(known.heat_maps[0], row_labels=(odd, *known.heat_maps[0].row_labels[1:])),),
+        assumptions=(evil,),
+        ruled_out={"substrate_tilt": odd},
+    )
+    read = Reader(report_html(diagnosis))
+    assert "script" not in read.tags
+    assert f"Diagnosis: {evil}" in read.words
+    assert odd in read.words
+    assert all(load.startswith(("data:", "#")) for load in read.loads)
+
+
+def test_saving_writes_three_files(tmp_path: Path) -> None:
+    small().save(tmp_path / "out")
+    assert {file.name for file in (tmp_path / "out").iterdir()} == {"diagnosis.json", "effects.toml", "report.html"}
+    table = json.loads((tmp_path / "out" / "diagnosis.json").read_text())
+    assert table["effects"][0]["name"] == "stray_field_gradient"
+
+
+def test_figures_are_drawn_on_what_they_are_given() -> None:
+    figures = plots.Figures(made())
+    for draw in (figures.gap, figures.ranking, figures.parameters):
+        ax = Figure().subplots()
+        assert draw(ax) is ax
+    assert len(figures.where(Figure()).axes) == 2 * len(made().heat_maps) + 1
+    assert len(figures.wrench("mode", Figure()).axes) == 2
+    # Five channels, and the difference along y.
+    assert len(figures.overlay("f15", Figure()).axes) == 6
+    with pytest.raises(InputError, match="f15"):
+        figures.overlay("f99", Figure())
+    with pytest.raises(InputError, match="missing_wrench"):
+        plots.Figures(no_gap()).wrench(figure=Figure())
+
+
+def test_a_wrench_of_which_the_data_say_nothing_is_hollow_and_cut_off() -> None:
+    ax = plots.plot_wrench(wrench(), "frequency", "force", Figure().subplots())
+    hollow = [line for line in ax.lines if line.get_markerfacecolor() == "white" and len(line.get_xdata())]
+    assert len(hollow) == 1
+    assert ax.get_ylim()[1] == pytest.approx(1.25 * 255.0)
+
+
+def test_gaps_are_drawn_in_the_order_of_the_trials() -> None:
+    ax = plots.plot_gap(made().gap, Figure().subplots())
+    assert [label.get_text() for label in ax.get_yticklabels()] == [trial.id for trial in lab().trials]
+    nominal = ax.collections[1].get_offsets()
+    assert nominal[6].tolist() == pytest.approx([34.2, 6.0])

@@ -1,0 +1,142 @@
+"""What a diagnosis says on a terminal."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tumblers.diagnosis.phrase import phrase_of
+from tumblers.diagnosis.quantity import percent, rounded, with_interval
+from tumblers.diagnosis.result import (
+    EffectEstimate,
+    Interval,
+    Region,
+)
+from tumblers.diagnosis.words import headline, points, summary
+from tumblers.effects.catalogue import CATALOGUE
+
+from .example import FREQUENCIES, NAN, lab, made, no_gap, outcomes_only
+
+
+def test_the_verdict_is_one_sentence_a_student_understands() -> None:
+    assert headline(made()) == (
+        "The robot is pulled along +y, more at high frequency, seen from 12 Hz up: a stray field gradient of "
+        "0.048 ± 0.004 T/m along y, growing with the frequency to the power 2.1 ± 0.5 (stated at 10 Hz) explains 93 % "
+        "of the gap on trials not fitted."
+    )
+    assert headline(no_gap()) == (
+        "No gap: the nominal model explains the data to within noise (1.0 σ, noise alone gives 1.0 σ)."
+    )
+    assert headline(made(verdict="unexplained", effects=(), chosen=())).startswith("Unexplained: the gap is 16.2 σ")
+    partial = headline(made(verdict="unexplained"))
+    assert "The best partial cause is that the robot is pulled along +y" in partial
+    assert "with it, 1.1 σ are left" in partial
+
+
+def test_two_effects_are_both_named() -> None:
+    tilt = EffectEstimate(
+        "substrate_tilt", 0.9, {"slope_x_deg": Interval(0, -1, 1), "slope_y_deg": Interval(-3, -3.5, -2.5)}, ()
+    )
+    words = headline(made(effects=(*made().effects, tilt)))
+    assert "and the substrate is not level, it rises along -y" in words
+    assert "and a slope of -3.0° ± 0.5° along y, together, explain 93 %" in words
+
+
+def test_the_summary_says_where_what_how_far_ties_and_next() -> None:
+    said = dict(points(made()))
+    assert "81 % of the gap at frequency 12 to 15 Hz" in said["where"]
+    assert "trials f15, f12" in said["where"]
+    assert said["missing"] == "the model lacks a force of 240 ± 15 nN towards +y at 15 Hz."
+    assert "probability 97 %" in said["what"]
+    assert "hardly narrowed" in said["what"]
+    assert (
+        "from 16.2 σ to 1.1 σ (with only the sensor's nuisances refitted: 15.8 σ; noise alone: 1.0 σ)"
+        in said["how far"]
+    )
+    assert "90 to 95 %" in said["how far"]
+    assert said["tied"] == "these trials cannot tell stray field gradient from viscous drag."
+    assert "substrate tilt, friction coefficient by trial f01 (10 mT at 1 Hz, level)" in said["ruled out"]
+    assert said["next trial"].startswith("20 mT at 15 Hz, level, 2 s: separates stray field gradient from viscous drag")
+    assert max(map(len, summary(made()).splitlines())) <= 100
+
+
+def test_cautions_name_what_weakens_a_diagnosis() -> None:
+    assert "caution" not in dict(points(made()))
+    said = " ".join(text for label, text in points(outcomes_only()) if label == "caution")
+    assert "there are no tracks" in said
+    assert "probability of 50 % only" in said
+    floors = [replace(floor, frames=60, lost=50, numerical_sigmas=2.0) for floor in made().floors[:1]]
+    said = " ".join(text for label, text in points(made(floors=tuple(floors))) if label == "caution")
+    assert "half of the frames are lost in f01" in said
+    assert "above the noise in f01" in said
+    at_end = EffectEstimate("draft_angle", 0.9, {"draft_deg": Interval(8.0, 7.5, 8.0)}, ())
+    assert "end of its plausible range" in dict(points(made(effects=(at_end,))))["caution"]
+
+
+@pytest.mark.parametrize("name", list(CATALOGUE))
+def test_every_effect_reads_naturally(name: str) -> None:
+    kind = CATALOGUE[name]
+    numbers = {p.key: Interval(0.5 * (p.neutral + p.high), p.neutral, p.high) for p in kind.parameters}
+    phrase = phrase_of(EffectEstimate(name, 0.9, numbers, ()), lab())
+    assert "_" not in phrase.cause + phrase.amount
+    assert re.match(r"(a|an|friction) ?", phrase.amount)
+    assert re.search(r"\d", phrase.amount)
+    unknown = {p.key: Interval(NAN, NAN, NAN, False) for p in kind.parameters}
+    assert "nan" not in headline(made(effects=(EffectEstimate(name, NAN, unknown, ()),)))
+
+
+def test_an_effect_of_the_users_own_falls_back_to_its_docstring(tmp_path: Path, monkeypatch: Any) -> None:
+    class OwnEffect:
+        """Something <odd> drags on the coils.
+
+        More words.
+        """
+
+        parameters = ()
+
+    monkeypatch.setitem(CATALOGUE, "own_effect", OwnEffect)
+    phrase = phrase_of(EffectEstimate("own_effect", 0.9, {"speed": Interval(2.0, 1.5, 2.5)}, ()), lab())
+    assert phrase.cause == "something <odd> drags on the coils"
+    assert phrase.amount == "own effect with speed = 2.0 ± 0.5"
+
+
+@pytest.mark.parametrize(
+    ("interval", "unit", "words"),
+    [
+        (Interval(0.0482, 0.0441, 0.0522), "T/m", "0.048 ± 0.004 T/m"),
+        (Interval(5.1e-6, 4.3e-6, 5.9e-6), "m", "5.1 ± 0.8 µm"),
+        (Interval(5.1e-6, 4.9e-6, 9.9e-6), "m", "5 µm (5 to 10)"),
+        (Interval(0.0, -1e-7, 1e-7), "N", "0 ± 100 nN"),
+        (Interval(12e-3, 10e-3, 14e-3), "s", "12 ± 2 ms"),
+        (Interval(2.1e7, 1.9e7, 2.3e7), "S", "21 ± 2 MS"),
+        (Interval(3.0, 2.0, 4.0), "degrees", "3.0° ± 1.0°"),
+        (Interval(1.234, 1.22, 1.25), "1", "1.234 ± 0.015"),
+        (Interval(NAN, NAN, NAN), "m", "unknown"),
+        (Interval(2.0e-3, NAN, 1.0), "m", "2 mm"),
+        (Interval(2.0, -np.inf, np.inf), "own unit", "2 own unit"),
+    ],
+)
+def test_numbers_have_handy_units_and_sensible_digits(interval: Interval, unit: str, words: str) -> None:
+    assert with_interval(interval, unit) == words
+
+
+def test_shares_do_not_claim_certainty() -> None:
+    assert [percent(share) for share in (0.0, 0.001, 0.934, 0.999, 1.0, NAN)] == [
+        "0 %",
+        "less than 1 %",
+        "93 %",
+        "more than 99 %",
+        "100 %",
+        "unknown",
+    ]
+    assert rounded(-0.0001, 0.1) == "0.00"
+
+
+def test_a_gap_in_most_trials_is_counted_rather_than_listed() -> None:
+    regions = tuple(Region("trial", 0.9 / (i + 2), value=f"f{f:02.0f}", sigmas=9.0) for i, f in enumerate(FREQUENCIES))
+    assert dict(points(made(where=regions)))["where"] == "7 of 9 trials are off, f01 holds most (45 %)."
