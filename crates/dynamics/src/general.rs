@@ -159,6 +159,6 @@ fn read_support(step: &Step, solution: &mut StepSolution) {
     let (_, lowest) = step.body.lowest(&down);
     let height = step.state.position.z + step.h * solution.linear.z + (rotation * lowest).z;
     solution.penetration = (-height - step.yielded(solution.normal)).max(0.0);
-    let touches = solution.normal > REQUIRED * step.load_scale();
+    let touches = solution.normal > REQUIRED * step.load_scale;
     solution.support = if touches { step.body.touching(&down, TOGETHER * step.size) } else { Support::None };
 }

@@ -35,7 +35,7 @@ pub fn judge(step: &Step, support: Support, at: &Evaluation) -> Verdict {
     let slack = INSIDE * step.size;
     if support != Support::None {
         let pull = -step.normal_impulse(at.normal);
-        if pull > NO_PULL * step.load_scale() {
+        if pull > NO_PULL * step.load_scale {
             return Verdict::Exchange(Support::None);
         }
         if let Some(next) = left_support(body, support, at, slack) {

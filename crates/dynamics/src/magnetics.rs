@@ -42,16 +42,29 @@ impl TorqueLaw {
         Self { known: self.known + impulse, ..self }
     }
 
-    /// `hT` and `h ∂T/∂ω⁺`. From `d(M × B) = (dφ × M) × B = (M Bᵀ - (M·B) 1) dφ`.
+    /// `hT`.
     #[inline]
-    pub fn impulse(&self, omega: &Vec3) -> (Vec3, Mat3) {
+    pub fn impulse(&self, omega: &Vec3) -> Vec3 {
         if self.weight == 0.0 {
-            return (self.known, Mat3::zeros());
+            return self.known;
         }
-        let moment = cayley(&(omega * self.alpha)) * self.moment;
+        self.known + self.turned(omega).cross(&self.field) * self.weight
+    }
+
+    /// `h ∂T/∂ω⁺`. From `d(M × B) = (dφ × M) × B = (M Bᵀ - (M·B) 1) dφ`.
+    #[inline]
+    pub fn by_angular(&self, omega: &Vec3) -> Mat3 {
+        if self.weight == 0.0 {
+            return Mat3::zeros();
+        }
+        let moment = self.turned(omega);
         let by_turn = moment * self.field.transpose() - Mat3::from_diagonal_element(moment.dot(&self.field));
-        let impulse = self.known + moment.cross(&self.field) * self.weight;
-        (impulse, by_turn * cayley_tangent(omega, self.alpha) * self.weight)
+        by_turn * cayley_tangent(omega, self.alpha) * self.weight
+    }
+
+    #[inline]
+    fn turned(&self, omega: &Vec3) -> Vec3 {
+        cayley(&(omega * self.alpha)) * self.moment
     }
 
     /// An upper bound of `|hT|`.

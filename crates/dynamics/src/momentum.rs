@@ -43,29 +43,28 @@ impl MomentumLaw {
         Self { kept, drag: drag.map(|drag| drag * h) }
     }
 
-    /// The change and its derivative by `ω⁺`.
+    /// The change.
     #[inline]
-    pub fn change(&self, inertia: &Mat3, omega: &Vec3) -> (Vec3, Mat3) {
-        let (change, by_omega) = self.kept.change(inertia, omega);
-        match &self.drag {
-            Some(drag) => (change + drag * omega, by_omega + drag),
-            None => (change, by_omega),
-        }
+    pub fn change(&self, inertia: &Mat3, omega: &Vec3) -> Vec3 {
+        let change = match &self.kept {
+            Kept::Explicit { known } => inertia * omega - known,
+            Kept::Midpoint { known, h } => cayley(&half_turn(omega, *h)) * (inertia * omega) - known,
+        };
+        self.drag.as_ref().map_or(change, |drag| change + drag * omega)
     }
-}
 
-impl Kept {
+    /// Its derivative by `ω⁺`.
     #[inline]
-    fn change(&self, inertia: &Mat3, omega: &Vec3) -> (Vec3, Mat3) {
-        match self {
-            Self::Explicit { known } => (inertia * omega - known, *inertia),
-            Self::Midpoint { known, h } => {
+    pub fn by_angular(&self, inertia: &Mat3, omega: &Vec3) -> Mat3 {
+        let by_angular = match &self.kept {
+            Kept::Explicit { .. } => *inertia,
+            Kept::Midpoint { h, .. } => {
                 let turn = cayley(&half_turn(omega, *h));
                 let momentum = turn * (inertia * omega);
-                let by_turn = -momentum.cross_matrix() * half_turn_tangent(omega, *h);
-                (momentum - known, turn * inertia + by_turn)
+                turn * inertia - momentum.cross_matrix() * half_turn_tangent(omega, *h)
             }
-        }
+        };
+        self.drag.as_ref().map_or(by_angular, |drag| by_angular + drag)
     }
 }
 
@@ -102,8 +101,8 @@ mod tests {
             for (when, drag) in laws.into_iter().chain(laws.map(|(when, _)| (when, Some(&drag)))) {
                 let law = MomentumLaw::new(when, &inertia, &Vec3::new(1.0, -2.0, 0.5), 0.9, drag);
                 let (w, d, e) = (Vec3::from(w), Vec3::from(d), 1e-6);
-                let numeric = (law.change(&inertia, &(w + d * e)).0 - law.change(&inertia, &(w - d * e)).0) / (2.0 * e);
-                prop_assert!((numeric - law.change(&inertia, &w).1 * d).norm() < 1e-7);
+                let numeric = (law.change(&inertia, &(w + d * e)) - law.change(&inertia, &(w - d * e))) / (2.0 * e);
+                prop_assert!((numeric - law.by_angular(&inertia, &w) * d).norm() < 1e-7);
             }
         }
 

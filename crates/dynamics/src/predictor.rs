@@ -39,7 +39,7 @@ pub fn contact(step: &Step, support: Support, start: &Unknowns) -> Reduced {
     if direct.converged {
         return direct;
     }
-    let largest = LARGEST * step.load_scale();
+    let largest = LARGEST * step.load_scale;
     let stuck = with_bound(step, support, largest, start);
     let from_stuck = solve(step, support, None, &stuck.at.unknowns);
     let iterations = direct.iterations + stuck.iterations + from_stuck.iterations;
@@ -76,7 +76,7 @@ enum Ladder {
 /// The contact just before the first root of `F` on the way, and the root itself where Newton's method finds it from
 /// there.
 fn root(step: &Step, support: Support, ladder: Ladder, start: &Unknowns) -> (Reduced, Option<Reduced>) {
-    let largest = LARGEST * step.load_scale();
+    let largest = LARGEST * step.load_scale;
     let up = ladder == Ladder::Up;
     let excess =
         |bound: f64, at: &Reduced| bound - step.friction.of(step.bound_impulse(step.normal_impulse(at.at.normal)));

@@ -57,6 +57,9 @@ pub(crate) struct Point {
     /// `a1 - q⁺`, `a2 - q⁺`.
     pub arm: Vec3,
     pub arm_substrate: Vec3,
+    /// The same in the body frame.
+    pub body_arm: Vec3,
+    pub body_arm_substrate: Vec3,
 }
 
 impl<'a> StepProblem<'a> {
@@ -89,7 +92,7 @@ impl<'a> StepProblem<'a> {
 
     /// `P`, or `m ℓ/h` for a body on which nothing acts.
     pub fn impulse_unit(&self) -> f64 {
-        let load = self.step.load_scale();
+        let load = self.step.load_scale;
         if load > 0.0 { load } else { self.step.mass * self.step.size / self.step.h }
     }
 
@@ -157,6 +160,8 @@ impl<'a> StepProblem<'a> {
         let (linear, angular) = (vector(0) * self.velocity_unit(), vector(3) / self.angular_scale());
         let (ecp, ecp_substrate) = (vector(6) * step.size, vector(9) * step.size);
         let travel = linear * step.h;
+        let rotation = cayley(&(angular * (0.5 * step.h))) * step.rotation;
+        let (arm, arm_substrate) = (ecp - travel, ecp_substrate - travel);
         Point {
             linear,
             angular,
@@ -165,9 +170,11 @@ impl<'a> StepProblem<'a> {
             friction: vector(12).component_mul(&self.friction_units()),
             sigma: z[sigma] * self.velocity_unit(),
             normal: z[normal] * self.impulse_unit(),
-            rotation: cayley(&(angular * (0.5 * step.h))) * step.rotation,
-            arm: ecp - travel,
-            arm_substrate: ecp_substrate - travel,
+            rotation,
+            arm,
+            arm_substrate,
+            body_arm: rotation.tr_mul(&arm),
+            body_arm_substrate: rotation.tr_mul(&arm_substrate),
         }
     }
 
@@ -176,13 +183,9 @@ impl<'a> StepProblem<'a> {
         if self.step.pulls_at_ecp { normal - self.step.adhesion } else { normal }
     }
 
-    /// `∇f_i` in the substrate frame, at `arm` from the centre of mass.
-    pub(crate) fn gradient(&self, surface: usize, point: &Point, arm: &Vec3) -> Vec3 {
-        point.rotation * self.step.body.surfaces()[surface].gradient(&(point.rotation.transpose() * arm))
-    }
-
-    fn value(&self, surface: usize, point: &Point, arm: &Vec3) -> f64 {
-        self.step.body.surfaces()[surface].value(&(point.rotation.transpose() * arm))
+    /// `∇f_i` in the substrate frame, at `body_arm` from the centre of mass in the body frame.
+    pub(crate) fn gradient(&self, surface: usize, point: &Point, body_arm: &Vec3) -> Vec3 {
+        point.rotation * self.step.body.surfaces()[surface].gradient(body_arm)
     }
 
     /// The weight of `∇f_i` in `C_F`.
@@ -193,7 +196,7 @@ impl<'a> StepProblem<'a> {
     pub(crate) fn normal_cone(&self, z: &[f64], point: &Point) -> Vec3 {
         (0..self.surfaces())
             .filter(|i| self.weight(*i, z) != 0.0)
-            .map(|i| self.gradient(i, point, &point.arm) * self.weight(i, z))
+            .map(|i| self.gradient(i, point, &point.body_arm) * self.weight(i, z))
             .sum()
     }
 
@@ -205,8 +208,8 @@ impl<'a> StepProblem<'a> {
         let (plane_slot, sigma_slot, normal_slot) = self.last_slots();
         let contact = Vec3::new(at.friction.x, at.friction.y, self.at_ecp(at.normal));
         let force = (at.linear - step.state.linear) * step.mass - contact - step.load - step.pull;
-        let (torque, _) = step.torque.impulse(&at.angular);
-        let (change, _) = step.momentum.change(&step.inertia, &at.angular);
+        let torque = step.torque.impulse(&at.angular);
+        let change = step.momentum.change(&step.inertia, &at.angular);
         let mut moment = change - torque - at.arm.cross(&contact) - step.pull_moment;
         moment.z -= at.friction.z;
 
@@ -224,8 +227,8 @@ impl<'a> StepProblem<'a> {
             out[9 + i] = opposed[i];
             out[12 + i] = e[i] * slip[i] * bound + z[12 + i] * sigma;
         }
-        for i in 0..self.surfaces() {
-            out[self.slot(i)] = -self.value(i, &at, &at.arm) / step.size;
+        for (i, surface) in step.body.surfaces().iter().enumerate() {
+            out[self.slot(i)] = -surface.value(&at.body_arm) / step.size;
         }
         out[plane_slot] = -(at.ecp_substrate.z + step.yielded(at.normal)) / step.size;
         out[sigma_slot] = bound * bound - z[12] * z[12] - z[13] * z[13] - z[14] * z[14];
@@ -239,7 +242,7 @@ impl<'a> StepProblem<'a> {
 
     /// The index and value of `max_i f_i(a2)`.
     pub(crate) fn greatest(&self, point: &Point) -> (usize, f64) {
-        self.step.body.max_value(&(point.rotation.transpose() * point.arm_substrate))
+        self.step.body.max_value(&point.body_arm_substrate)
     }
 }
 

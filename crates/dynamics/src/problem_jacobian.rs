@@ -37,8 +37,8 @@ impl StepProblem<'_> {
         let contact = Vec3::new(at.friction.x, at.friction.y, self.at_ecp(at.normal)) / impulse;
 
         put(0, 0, &Mat3::identity());
-        let (_, torque) = step.torque.impulse(&at.angular);
-        let (_, change) = step.momentum.change(&step.inertia, &at.angular);
+        let torque = step.torque.by_angular(&at.angular);
+        let change = step.momentum.by_angular(&step.inertia, &at.angular);
         put(3, 3, &((change - torque) / (impulse * step.size * self.angular_scale())));
         put(3, 6, &contact.cross_matrix());
         put(3, 0, &(-contact.cross_matrix() * travel));
@@ -52,10 +52,9 @@ impl StepProblem<'_> {
             if weight == 0.0 {
                 continue;
             }
-            let body_arm = at.rotation.transpose() * at.arm;
-            let hessian = step.body.surfaces()[i].hessian(&body_arm) * step.size;
+            let hessian = step.body.surfaces()[i].hessian(&at.body_arm) * step.size;
             let curvature = at.rotation * hessian * at.rotation.transpose();
-            let gradient = self.gradient(i, &at, &at.arm);
+            let gradient = self.gradient(i, &at, &at.body_arm);
             by_arm += curvature * weight;
             by_turn += (curvature * arm.cross_matrix() - gradient.cross_matrix()) * weight;
         }
@@ -106,7 +105,7 @@ impl StepProblem<'_> {
         out[(2, normal)] -= 1.0;
         out[(11, plane)] += 1.0;
         for i in 0..m {
-            let gradient = self.gradient(i, &at, &at.arm);
+            let gradient = self.gradient(i, &at, &at.body_arm);
             if i != self.active {
                 for j in 0..3 {
                     out[(6 + j, self.slot(i))] += gradient[j] * k;
@@ -119,7 +118,7 @@ impl StepProblem<'_> {
         out[(plane, normal)] -= step.yielding * impulse / step.size;
         out[(sigma, normal)] += 2.0 * bound * step.friction.slope();
         let (surface, _) = self.greatest(&at);
-        let gradient = self.gradient(surface, &at, &at.arm_substrate);
+        let gradient = self.gradient(surface, &at, &at.body_arm_substrate);
         put_value_row(&mut out, (normal, 9), &gradient, &(at.arm_substrate / step.size), &turn, travel);
     }
 }

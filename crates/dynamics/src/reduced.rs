@@ -13,15 +13,16 @@
 //! because the ECP is on the plane, which has yielded by `δ`. Without a support only A is left, and `-p_a n` acts at the
 //! lowest point where adhesion acts at the ECP.
 
-use crate::contact::ContactPoints;
-use crate::friction::friction_rows;
+use crate::contact::{ContactPoints, of_generator, turn_of_generator};
+use crate::friction::FrictionRows;
 use crate::rotation::{cayley, cayley_tangent};
 use crate::step::Step;
 use crate::{Mat3, Vec3};
 use geometry::Support;
-use nalgebra::{Const, DimMin, SMatrix, SVector};
+use nalgebra::{RowVector3, SMatrix, SVector};
 use scales::Scales;
 
+mod elimination;
 mod scales;
 
 /// Scaled residual at which the reduced problem counts as solved. Rounding leaves about 1e-15.
@@ -90,31 +91,32 @@ pub fn solve(step: &Step, support: Support, hang: Option<u16>, start: &Unknowns)
 }
 
 /// Semismooth Newton with step halving on the greatest scaled row.
-fn newton<const N: usize>(step: &Step, support: Support, hang: Option<u16>, start: &Unknowns) -> Reduced
-where
-    Const<N>: DimMin<Const<N>, Output = Const<N>>,
-{
+fn newton<const N: usize>(step: &Step, support: Support, hang: Option<u16>, start: &Unknowns) -> Reduced {
     let scales = Scales::<N>::new(step, start);
-    let (mut at, mut rows, mut jacobian) = assemble::<N>(step, support, hang, start, &scales);
+    let mut here = Rows::<N>::new(step, support, hang, start, &scales);
     let mut iterations = 0;
-    while at.error > TOLERANCE && iterations < MAX_ITERATIONS {
+    while here.at.error > TOLERANCE && iterations < MAX_ITERATIONS {
         iterations += 1;
-        let Some(direction) = jacobian.lu().solve(&rows) else { break };
+        let jacobian = here.jacobian(step, support, hang, &scales);
+        let Some(direction) = elimination::solve(jacobian, &here.value) else { break };
+        let rows_after = |length: f64| {
+            Rows::<N>::new(step, support, hang, &here.at.unknowns.moved(&direction, length, &scales), &scales)
+        };
         let mut length = 1.0;
-        let mut next = assemble::<N>(step, support, hang, &at.unknowns.moved(&direction, length, &scales), &scales);
+        let mut next = rows_after(length);
         for _ in 0..MAX_HALVINGS {
-            if next.0.error < at.error {
+            if next.at.error < here.at.error {
                 break;
             }
             length *= 0.5;
-            next = assemble::<N>(step, support, hang, &at.unknowns.moved(&direction, length, &scales), &scales);
+            next = rows_after(length);
         }
-        if !next.0.error.is_finite() || (next.0.error >= at.error && at.error <= ACCEPTABLE) {
+        if !next.at.error.is_finite() || (next.at.error >= here.at.error && here.at.error <= ACCEPTABLE) {
             break;
         }
-        (at, rows, jacobian) = next;
+        here = next;
     }
-    Reduced { at, iterations, converged: at.error <= ACCEPTABLE }
+    Reduced { at: here.at, iterations, converged: here.at.error <= ACCEPTABLE }
 }
 
 impl Unknowns {
@@ -141,145 +143,165 @@ impl Unknowns {
     }
 }
 
-/// Rows A, B, C and their Jacobian at `x`, both scaled.
-fn assemble<const N: usize>(
-    step: &Step,
-    support: Support,
-    hang: Option<u16>,
-    x: &Unknowns,
-    scales: &Scales<N>,
-) -> (Evaluation, SVector<f64, N>, SMatrix<f64, N, N>) {
-    let half = 0.5 * step.h;
-    let rotation = cayley(&(x.angular * half)) * step.rotation;
-    let turn = cayley_tangent(&x.angular, half);
-    let points = ContactPoints::new(step.body, support, &rotation);
-    let count = points.count;
+/// Rows A, B, C at a point, scaled, and what their Jacobian takes from them.
+struct Rows<const N: usize> {
+    at: Evaluation,
+    value: SVector<f64, N>,
+    points: ContactPoints,
+    friction: Option<FrictionRows>,
+}
 
-    let e = step.ellipsoid;
-    let p = e.component_mul(&x.friction);
-    let normal: f64 = x.impulses[..count].iter().sum();
-    let mut linear = step.state.linear + (step.load + step.pull) / step.mass;
-    if count > 0 {
-        linear += Vec3::new(p.x, p.y, normal) / step.mass;
-    }
-    let (torque, torque_by_angular) = step.torque.impulse(&x.angular);
-    let (change, change_by_angular) = step.momentum.change(&step.inertia, &x.angular);
-    let mut moment = change - torque - step.pull_moment;
-    let mut moment_by_angular = change_by_angular - torque_by_angular;
+impl<const N: usize> Rows<N> {
+    /// `k`, the number of impulses.
+    const POINTS: usize = N.saturating_sub(6);
 
-    let mut rows = SVector::<f64, N>::zeros();
-    let mut jacobian = SMatrix::<f64, N, N>::zeros();
-    let mut arm = Vec3::zeros();
-    let mut slip = Vec3::zeros();
-    let mut slips = false;
-    let mut error: f64 = 0.0;
-    let height;
+    /// The rows at `x`.
+    fn new(step: &Step, support: Support, hang: Option<u16>, x: &Unknowns, scales: &Scales<N>) -> Self {
+        let rotation = cayley(&(x.angular * (0.5 * step.h))) * step.rotation;
+        let points = ContactPoints::new(step.body, support, &rotation);
+        let count = Self::POINTS;
 
-    if count == 0 {
-        if let Some(generator) = hang {
-            let (y, y_by_turn) = ContactPoints::of_generator(step.body, generator, &rotation);
-            linear.z -= step.adhesion / step.mass;
-            // -p_a y × n, negated as a load.
-            moment += y.cross(&Vec3::z()) * step.adhesion;
-            moment_by_angular -= Vec3::z().cross_matrix() * y_by_turn * turn * step.adhesion;
-            arm = y;
-        }
-        height = step.state.position.z + step.h * linear.z;
-    } else {
-        height = step.state.position.z + step.h * linear.z + step.yielded(step.normal_impulse(normal));
-        let supported = normal.abs() > NO_FORCE * scales.load;
-        // r and its derivatives; r_z follows the height, and h/m + c/h is its change with N.
-        let mut arm_by_turn = Mat3::zeros();
-        let mut arm_by_impulse = [Vec3::zeros(); 3];
-        for j in 0..count {
-            let share = if supported { x.impulses[j] / normal } else { 1.0 / count as f64 };
-            arm += points.y[j] * share;
-            arm_by_turn += points.turn[j] * share;
-        }
-        if supported {
-            for (by, y) in arm_by_impulse.iter_mut().zip(&points.y[..count]) {
-                *by = (y - arm) / normal;
+        let e = step.ellipsoid;
+        let p = e.component_mul(&x.friction);
+        let normal: f64 = x.impulses[..count].iter().sum();
+        let mut linear = step.state.linear + (step.load + step.pull) / step.mass;
+        let change = step.momentum.change(&step.inertia, &x.angular);
+        let mut moment = change - step.torque.impulse(&x.angular) - step.pull_moment;
+
+        let mut value = SVector::<f64, N>::zeros();
+        let mut arm = Vec3::zeros();
+        let mut slip = Vec3::zeros();
+        let mut friction = None;
+        let mut error: f64 = 0.0;
+        let height;
+
+        if count == 0 {
+            if let Some(generator) = hang {
+                arm = of_generator(step.body, generator, &rotation);
+                linear.z -= step.adhesion / step.mass;
+                // -p_a y × n, negated as a load.
+                moment += arm.cross(&Vec3::z()) * step.adhesion;
             }
-        }
-        let fall = step.h / step.mass + step.yielding;
-        arm.z = -height;
-        arm_by_turn.set_row(2, &nalgebra::RowVector3::zeros());
-        for by in &mut arm_by_impulse[..count] {
-            by.z = -fall;
-        }
-        let arm_by_angular = arm_by_turn * turn;
+            height = step.state.position.z + step.h * linear.z;
+        } else {
+            linear += Vec3::new(p.x, p.y, normal) / step.mass;
+            height = step.state.position.z + step.h * linear.z + step.yielded(step.normal_impulse(normal));
+            for j in 0..count {
+                arm += points.y[j] * share(x, normal, j, scales);
+            }
+            arm.z = -height;
 
-        let tangential = Vec3::new(p.x, p.y, 0.0);
-        moment -= arm.cross(&tangential);
-        moment.z -= p.z;
-        moment_by_angular += tangential.cross_matrix() * arm_by_angular;
-        for j in 0..count {
-            let (y, pj) = (points.y[j], x.impulses[j]);
-            moment -= Vec3::new(y.y, -y.x, 0.0) * pj;
-            moment_by_angular += Vec3::z().cross_matrix() * (points.turn[j] * turn) * pj;
-            let by_impulse = tangential.cross(&arm_by_impulse[j]) - Vec3::new(y.y, -y.x, 0.0);
-            let by_angular = (points.turn[j] * turn).row(2).into_owned();
-            rows[3 + j] = (height + y.z) / scales.length;
+            moment -= arm.cross(&Vec3::new(p.x, p.y, 0.0));
+            moment.z -= p.z;
+            for j in 0..count {
+                let y = points.y[j];
+                moment -= Vec3::new(y.y, -y.x, 0.0) * x.impulses[j];
+                value[3 + j] = (height + y.z) / scales.length;
+                error = error.max(value[3 + j].abs());
+            }
+
+            // u = (v_x + ω_y r_z - ω_z r_y, v_y + ω_z r_x - ω_x r_z, ω_z)
+            let surface = linear + x.angular.cross(&arm);
+            slip = Vec3::new(surface.x, surface.y, x.angular.z);
+            let bound = step.friction.of(step.bound_impulse(step.normal_impulse(normal)));
+            let rows = FrictionRows::new(&x.friction, &e.component_mul(&slip), bound, step.mass);
             for i in 0..3 {
-                jacobian[(i, 3 + j)] = by_impulse[i] * scales.impulse / scales.moment;
-                jacobian[(3 + j, i)] = by_angular[i] * scales.angular / scales.length;
+                value[3 + count + i] = rows.value[i] / scales.impulse;
+                error = error.max(rows.value[i].abs() / scales.load);
             }
-            for l in 0..count {
-                jacobian[(3 + j, 3 + l)] = fall * scales.impulse / scales.length;
-            }
-            error = error.max(rows[3 + j].abs());
+            friction = Some(rows);
         }
 
-        // u = (v_x + ω_y r_z - ω_z r_y, v_y + ω_z r_x - ω_x r_z, ω_z)
-        let w = x.angular;
-        let surface = linear + w.cross(&arm);
-        slip = Vec3::new(surface.x, surface.y, w.z);
-        let mut slip_by_angular = w.cross_matrix() * arm_by_angular - arm.cross_matrix();
-        slip_by_angular.set_row(2, &nalgebra::RowVector3::new(0.0, 0.0, 1.0));
-
-        let bound = step.friction.of(step.bound_impulse(step.normal_impulse(normal)));
-        let rho = step.mass;
-        let friction = friction_rows(&x.friction, &e.component_mul(&slip), bound, rho);
-        slips = friction.slips;
-        let scaled_slip = friction.by_slip * Mat3::from_diagonal(&e);
-        let by_angular = scaled_slip * slip_by_angular;
         for i in 0..3 {
-            let row = 3 + count + i;
-            rows[row] = friction.value[i] / scales.impulse;
-            error = error.max(friction.value[i].abs() / scales.load);
-            for j in 0..3 {
-                jacobian[(row, j)] = by_angular[(i, j)] * scales.angular / scales.impulse;
-            }
+            value[i] = moment[i] / scales.moment;
+            error = error.max(moment[i].abs() / (scales.load * step.size));
         }
-        for (j, by) in arm_by_impulse[..count].iter().enumerate() {
-            let moved = w.cross(by);
-            let by_impulse = scaled_slip * Vec3::new(moved.x, moved.y, 0.0) + friction.by_bound * step.friction.slope();
-            for i in 0..3 {
-                jacobian[(3 + count + i, 3 + j)] = by_impulse[i];
-            }
-        }
-        // φ enters v through E φ / m, and the moment through r × (p_t, p_o, 0) + p_r n.
-        let by_friction =
-            friction.by_friction + scaled_slip * Mat3::from_diagonal(&Vec3::new(e.x, e.y, 0.0)) / step.mass;
-        let lever =
-            [Vec3::new(0.0, -arm.z, arm.y) * e.x, Vec3::new(arm.z, 0.0, -arm.x) * e.y, Vec3::new(0.0, 0.0, -1.0) * e.z];
-        for j in 0..3 {
-            for i in 0..3 {
-                jacobian[(3 + count + i, 3 + count + j)] = by_friction[(i, j)];
-                jacobian[(i, 3 + count + j)] = lever[j][i] * scales.impulse / scales.moment;
-            }
-        }
+        let slips = friction.as_ref().is_some_and(FrictionRows::slips);
+        let at = Evaluation { unknowns: *x, linear, rotation, height, normal, arm, slip, slips, error };
+        Self { at, value, points, friction }
     }
 
-    for i in 0..3 {
-        rows[i] = moment[i] / scales.moment;
-        error = error.max(moment[i].abs() / (scales.load * step.size));
-        for j in 0..3 {
-            jacobian[(i, j)] = moment_by_angular[(i, j)] * scales.angular / scales.moment;
+    /// The Jacobian of the rows, scaled.
+    fn jacobian(&self, step: &Step, support: Support, hang: Option<u16>, scales: &Scales<N>) -> SMatrix<f64, N, N> {
+        let Evaluation { unknowns: x, rotation, normal, arm, .. } = &self.at;
+        let count = Self::POINTS;
+        let turn = cayley_tangent(&x.angular, 0.5 * step.h);
+        let mut moment_by_angular =
+            step.momentum.by_angular(&step.inertia, &x.angular) - step.torque.by_angular(&x.angular);
+        let mut jacobian = SMatrix::<f64, N, N>::zeros();
+
+        if let Some(friction) = &self.friction {
+            let e = step.ellipsoid;
+            let p = e.component_mul(&x.friction);
+            let tangential = Vec3::new(p.x, p.y, 0.0);
+            // How the points move with ω⁺, and r, whose r_z follows the height; h/m + c/h is the height's change with N.
+            let turns = self.points.turns(step.body, support, rotation);
+            let fall = step.h / step.mass + step.yielding;
+            let mut arm_by_turn = Mat3::zeros();
+            for (j, by_turn) in turns.iter().enumerate().take(count) {
+                arm_by_turn += by_turn * share(x, *normal, j, scales);
+            }
+            arm_by_turn.set_row(2, &RowVector3::zeros());
+            let arm_by_angular = arm_by_turn * turn;
+
+            // u with ω⁺.
+            let mut slip_by_angular = x.angular.cross_matrix() * arm_by_angular - arm.cross_matrix();
+            slip_by_angular.set_row(2, &RowVector3::new(0.0, 0.0, 1.0));
+            let (by_friction, by_slip, by_bound) = friction.derivatives();
+            let scaled_slip = by_slip * Mat3::from_diagonal(&e);
+            let by_angular = scaled_slip * slip_by_angular * scales.angular / scales.impulse;
+            jacobian.fixed_view_mut::<3, 3>(3 + count, 0).copy_from(&by_angular);
+
+            moment_by_angular += tangential.cross_matrix() * arm_by_angular;
+            for (j, by_turn) in turns.iter().enumerate().take(count) {
+                let (y, pj) = (self.points.y[j], x.impulses[j]);
+                let y_by_angular = by_turn * turn;
+                moment_by_angular += Vec3::z().cross_matrix() * y_by_angular * pj;
+                let by_angular = y_by_angular.row(2) * scales.angular / scales.length;
+                jacobian.fixed_view_mut::<1, 3>(3 + j, 0).copy_from(&by_angular);
+                for l in 0..count {
+                    jacobian[(3 + j, 3 + l)] = fall * scales.impulse / scales.length;
+                }
+
+                let mut arm_by_impulse = if supported(*normal, scales) { (y - arm) / *normal } else { Vec3::zeros() };
+                arm_by_impulse.z = -fall;
+                let moment_by_impulse = tangential.cross(&arm_by_impulse) - Vec3::new(y.y, -y.x, 0.0);
+                jacobian
+                    .fixed_view_mut::<3, 1>(0, 3 + j)
+                    .copy_from(&(moment_by_impulse * scales.impulse / scales.moment));
+                let moved = x.angular.cross(&arm_by_impulse);
+                let by_impulse = scaled_slip * Vec3::new(moved.x, moved.y, 0.0) + by_bound * step.friction.slope();
+                jacobian.fixed_view_mut::<3, 1>(3 + count, 3 + j).copy_from(&by_impulse);
+            }
+
+            // φ enters v through E φ / m, and the moment through r × (p_t, p_o, 0) + p_r n.
+            let by_friction = by_friction + scaled_slip * Mat3::from_diagonal(&Vec3::new(e.x, e.y, 0.0)) / step.mass;
+            jacobian.fixed_view_mut::<3, 3>(3 + count, 3 + count).copy_from(&by_friction);
+            let lever = Mat3::from_columns(&[
+                Vec3::new(0.0, -arm.z, arm.y) * e.x,
+                Vec3::new(arm.z, 0.0, -arm.x) * e.y,
+                Vec3::new(0.0, 0.0, -1.0) * e.z,
+            ]);
+            jacobian.fixed_view_mut::<3, 3>(0, 3 + count).copy_from(&(lever * scales.impulse / scales.moment));
+        } else if let Some(generator) = hang {
+            let y_by_turn = turn_of_generator(step.body, generator, rotation, arm);
+            moment_by_angular -= Vec3::z().cross_matrix() * y_by_turn * turn * step.adhesion;
         }
+        jacobian.fixed_view_mut::<3, 3>(0, 0).copy_from(&(moment_by_angular * scales.angular / scales.moment));
+        jacobian
     }
-    let at = Evaluation { unknowns: *x, linear, rotation, height, normal, arm, slip, slips, error };
-    (at, rows, jacobian)
+}
+
+/// Whether there is a normal impulse to share out.
+#[inline]
+fn supported<const N: usize>(normal: f64, scales: &Scales<N>) -> bool {
+    normal.abs() > NO_FORCE * scales.load
+}
+
+/// The weight of `y_j` in `r`.
+#[inline]
+fn share<const N: usize>(x: &Unknowns, normal: f64, j: usize, scales: &Scales<N>) -> f64 {
+    if supported(normal, scales) { x.impulses[j] / normal } else { 1.0 / Rows::<N>::POINTS as f64 }
 }
 
 #[cfg(test)]

@@ -34,7 +34,7 @@ impl Rows {
         let load = step.mass * step.state.linear.norm()
             + (step.inertia * step.state.angular).norm() / step.size
             + step.load.norm()
-            + step.torque.impulse(&solution.angular).0.norm() / step.size
+            + step.torque.impulse(&solution.angular).norm() / step.size
             + step.adhesion
             + at_ecp.abs()
             + solution.friction.xy().abs().sum();

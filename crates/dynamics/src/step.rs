@@ -74,6 +74,8 @@ pub struct Step<'a> {
     pub pull_moment: Vec3,
     /// `c/h`: how far the plane yields per normal impulse, m/(N s).
     pub yielding: f64,
+    /// `P` before the contact impulses are known.
+    pub load_scale: f64,
 }
 
 impl<'a> Step<'a> {
@@ -115,15 +117,22 @@ impl<'a> Step<'a> {
             load += turned(force);
             torque = torque.with_impulse(turned(moment) * h);
         }
+        load *= h;
+        let size = robot.body().size();
+        let load_scale = mass * start.linear.norm()
+            + (inertia * start.angular).norm() / size
+            + load.norm()
+            + torque.greatest() / size
+            + adhesion.impulse;
         Self {
             body: robot.body(),
             h,
             mass,
-            size: robot.body().size(),
+            size,
             rotation,
             inertia,
             state: start,
-            load: load * h,
+            load,
             momentum: MomentumLaw::new(
                 model.magnetic_torque,
                 &inertia,
@@ -140,6 +149,7 @@ impl<'a> Step<'a> {
             pull,
             pull_moment,
             yielding: trial.substrate().compliance / h,
+            load_scale,
         }
     }
 
@@ -159,15 +169,5 @@ impl<'a> Step<'a> {
     #[inline]
     pub fn bound_impulse(&self, normal: f64) -> f64 {
         if self.raises_bound && normal > 0.0 { normal + self.adhesion } else { normal }
-    }
-
-    /// `P` before the contact impulses are known.
-    #[inline]
-    pub fn load_scale(&self) -> f64 {
-        self.mass * self.state.linear.norm()
-            + (self.inertia * self.state.angular).norm() / self.size
-            + self.load.norm()
-            + self.torque.greatest() / self.size
-            + self.adhesion
     }
 }

@@ -1,6 +1,6 @@
 //! The stepper: solves one step after another and advances the state.
 
-use crate::contact::{ContactPoints, downward};
+use crate::contact::{downward, of_generator};
 use crate::exchange::{Found, Warm, search};
 use crate::general::{General, REQUIRED};
 use crate::reduced::Unknowns;
@@ -184,7 +184,7 @@ fn accept(step: &Step, found: &Found, solution: &mut StepSolution) {
     let down = downward(&at.rotation);
     let (lowest, lowest_point) = body.lowest(&down);
     let arm = if found.support == Support::None && at.arm == Vec3::zeros() {
-        ContactPoints::of_generator(body, lowest, &at.rotation).0
+        of_generator(body, lowest, &at.rotation)
     } else {
         at.arm
     };

@@ -99,7 +99,7 @@ fn the_general_solver_makes_the_same_steps() {
         for step in 0..trial.steps() {
             let (state, support) = (*fast.state(), fast.solution().support);
             let mut general = Stepper::from_state(&trial, SolverKind::General, state, step, *fast.adhesion(), support);
-            let load = Step::new(&trial, &state, fast.time(), fast.adhesion()).load_scale() / trial.robot().mass();
+            let load = Step::new(&trial, &state, fast.time(), fast.adhesion()).load_scale / trial.robot().mass();
             let (a, b) = (fast.advance(), general.advance());
             assert!(b.converged, "step {step}: {:e}", b.residual);
             let scale = a.linear.norm() + size * a.angular.norm() + load;

@@ -21,7 +21,7 @@ impl<const N: usize> Scales<N> {
             impulse: step.mass * step.size / step.h,
             moment: step.mass * step.size * step.size / step.h,
             length: step.size,
-            load: step.load_scale() + contact,
+            load: step.load_scale + contact,
         }
     }
 }
