@@ -36,7 +36,8 @@ def lab(effects: tuple[Effect, ...] = (), seed: int = 0) -> Dataset:
             for name, field, slope in plans
         ),
     )
-    paths = Simulator(empty, 1).run([Job(i, effects) for i in range(len(plans))])
+    # A world of a fine step: another step is not the matter here.
+    paths = Simulator(empty, 1).run([Job(i, effects, divisor=4) for i in range(len(plans))])
     trials = []
     for path, trial in zip(paths, empty.trials, strict=True):
         assert path is not None

@@ -55,6 +55,7 @@ def measure(
     heading_deg: float = 0.0,
     scale: float = 1.0,
     divisor: int = 4,
+    coarse: bool = False,
     quaternions: bool = False,
 ) -> Dataset:
     """Return what is seen of planned trials: the tracks of a world that has `effects`.
@@ -72,11 +73,15 @@ def measure(
         and scale are off.
     divisor
         By how much the world's step is smaller than the model's.
+    coarse
+        Whether the world is computed in the longest step and, where none is stated, the formats' own torque scheme.
     quaternions
         Whether the camera sees whole orientations, not tilt and heading.
     """
     rng = np.random.default_rng(seed)
-    paths = Simulator(planned, 1).run([Job(i, effects, divisor=divisor) for i in range(len(planned.trials))])
+    simulator = Simulator(planned, 1)
+    edit = simulator.coarse if coarse else None
+    paths = simulator.run([Job(i, effects, divisor=divisor, edit=edit) for i in range(len(planned.trials))])
     trials = []
     for path, trial in zip(paths, planned.trials, strict=True):
         assert path is not None

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from tumblers.diagnosis import diagnose
+from tumblers.model import Model
 
 from .lab import UPWARDS, measure, plan, without
 
@@ -43,6 +46,14 @@ def test_a_camera_that_is_off_by_more_is_the_camera() -> None:
 @pytest.mark.parametrize("divisor", [1, 4])
 def test_another_step_is_no_effect(divisor: int) -> None:
     diagnosis = diagnose(measure(plan(), divisor=divisor, seed=3), effects=CONSIDERED, jobs=2)
+    assert diagnosis.verdict == "no_gap"
+    assert not diagnosis.effects
+
+
+def test_numbers_that_were_computed_in_a_coarse_step_by_another_scheme_are_no_effect() -> None:
+    planned = replace(plan(), model=Model(), model_given=())
+    assert not planned.model_given
+    diagnosis = diagnose(measure(planned, coarse=True, seed=5), effects=CONSIDERED, jobs=2)
     assert diagnosis.verdict == "no_gap"
     assert not diagnosis.effects
 

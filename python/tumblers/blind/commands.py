@@ -49,6 +49,7 @@ def _make(
 def _run(
     directory: _Directory,
     jobs: _Jobs = None,
+    threads: Annotated[int, typer.Option(help="Threads of each diagnosis.")] = 1,
     only: Annotated[str, typer.Option(help="Numbers of the datasets to diagnose, such as 0,3 or 10:19.")] = "",
 ) -> None:
     """Diagnose every dataset that has no diagnosis of this version yet; the answers stay closed.
@@ -56,12 +57,12 @@ def _run(
     \b
     Examples:
       tumblers blind run blind
-      tumblers blind run blind --only 0:11 --jobs 4
+      tumblers blind run blind --only 0:11 --jobs 2 --threads 2
     """  # noqa: D301
     from .run import run
 
     with _as_options():
-        done, skipped, failed = run(directory, jobs=jobs, only=_numbers(only), progress=True)
+        done, skipped, failed = run(directory, jobs=jobs, threads=threads, only=_numbers(only), progress=True)
     typer.echo(f"{done} diagnosed, {skipped} done before, {failed} failed")
     if failed:
         raise typer.Exit(1)
@@ -114,6 +115,6 @@ def _as_options() -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        if error.key in ("seed", "count", "jobs", "out", "only"):
+        if error.key in ("seed", "count", "jobs", "threads", "out", "only"):
             raise InputError(f"--{error.key}", error.found, error.expected, error.file) from None
         raise

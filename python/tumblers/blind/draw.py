@@ -24,7 +24,7 @@ from .sensing import Nuisances, measure
 from .strength import Strength, strength
 from .world import Scene, Solver, watch
 
-__all__ = ["QUIET_SIGMA", "QUIET_TRIAL_SIGMA", "draw_dataset"]
+__all__ = ["QUIET_SIGMA", "QUIET_TRIAL_SIGMA", "REPEATS", "draw_dataset"]
 
 _TARGETS = (0.7, 1.5, 3.0, 6.0, 12.0, 25.0)
 # Two effects, and causes outside the catalogue, are to be seen.
@@ -37,6 +37,8 @@ _LABS, _DRAWS, _BISECTIONS, _CLOSE = 12, 3, 9, 0.12
 # Labs after which another pair of effects is drawn: one of them may have no part in any lab's motion.
 _LABS_PER_PAIR = 3
 _SMALLEST = 1e-3
+# Another step of the world changes no more than this share of what its causes change.
+_FINER, REPEATS = 0.7, 0.15
 _OTHER_FORM = 1.0 / 3.0
 
 
@@ -48,12 +50,17 @@ class _World:
     jitter_sigma: float
 
     def scenes(
-        self, laws: Sequence[Law], late_s: Sequence[float] | None = None, solver: Solver = "reduced"
+        self,
+        laws: Sequence[Law],
+        late_s: Sequence[float] | None = None,
+        solver: Solver = "reduced",
+        finer: float = 1.0,
     ) -> list[Scene]:
         scenes = []
         for i, plan in enumerate(self.lab.plans):
             frames = self.lab.frames(plan) + (late_s[i] if late_s is not None and plan.tracked else 0.0)
             scenario = world_scenario(self.lab, plan, self.jitter)
+            scenario = replace(scenario, run=replace(scenario.run, step_s=finer * scenario.run.step_s))
             scenes.append(watch(scenario, laws, frames, trial=i, solver=solver))
         return scenes
 
@@ -63,6 +70,15 @@ class _World:
             return strength(self.lab, self.scenes(laws), self.plain)
         except (ArithmeticError, InputError):
             return None
+
+    def repeats(self, laws: Sequence[Law]) -> bool:
+        """Return whether the world with its causes hardly depends on its step: a lab shows what it sees again."""
+        try:
+            scenes = self.scenes(laws)
+            shown, stepped = strength(self.lab, scenes, self.plain), self.scenes(laws, finer=_FINER)
+            return strength(self.lab, stepped, scenes).sigma <= max(QUIET_SIGMA, REPEATS * shown.sigma)
+        except (ArithmeticError, InputError):
+            return False
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +120,7 @@ def draw_dataset(seed: int, index: int) -> tuple[Dataset, Answer]:
             first, second = rng.choice(len(CATALOGUE), size=2, replace=False).tolist()
             names = (tuple(CATALOGUE)[first], tuple(CATALOGUE)[second])
         sized = _sizes(world, about.kind, names, other, target, rng)
-        if sized is None:
+        if sized is None or not world.repeats([s.law for s in sized]):
             continue
         found.append((world, sized))
         least = min(_SEEN, target) * (1.0 - _CLOSE) if about.kind == "one" else _CLEAR

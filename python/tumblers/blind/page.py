@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from .draw import QUIET_SIGMA, QUIET_TRIAL_SIGMA
+from .draw import QUIET_SIGMA, QUIET_TRIAL_SIGMA, REPEATS
 from .score import Criterion, Scores, Share
 
 __all__ = ["page_of", "print_scores"]
@@ -33,7 +33,9 @@ def page_of(scores: Scores) -> str:
         "Easier than a lab's data in these ways: a lab is drawn again where the nominal numbers' being off and the "
         f"world's own step alone would move its numbers by more than {QUIET_SIGMA:g} sigma, or one trial's by more "
         f"than {QUIET_TRIAL_SIGMA:g}, so that the most sensitive motions near step-out and the friction angle are "
-        "missing; a pair of effects that does not show in three labs is drawn again. An effect counts as named first "
+        "missing; causes whose motion depends on the world's own step by more than "
+        f"{100.0 * REPEATS:.0f} % of what they change are drawn again in another lab, for a lab shows what it sees "
+        "again; a pair of effects that does not show in three labs is drawn again. An effect counts as named first "
         "where it leads the effects of the diagnosis, whatever the verdict.",
         "## What has to hold",
         _table(("", "found", "wanted", "of", "met"), [_criterion_row(c) for c in scores.criteria]),
@@ -76,7 +78,8 @@ def page_of(scores: Scores) -> str:
             [_share_row("trial", _halves(scores)), *(_share_row(axis, s) for axis, s in scores.regions.items())],
         ),
         "## Time",
-        f"Mean {_number(scores.seconds_mean, 1)} s, longest {_number(scores.seconds_longest, 1)} s, one thread each.",
+        f"Mean {_number(scores.seconds_mean, 1)} s, longest {_number(scores.seconds_longest, 1)} s; wall time, each "
+        f"diagnosis on {'one thread' if scores.threads == 1 else f'{scores.threads} threads'}, others beside it.",
         "## Every dataset",
         _table(
             ("dataset", "truth", "strength, sigma", "verdict", "named", "shrink", "s"),

@@ -31,14 +31,15 @@ class Record:
         The truth, whose seal was whole.
     diagnosis
         The table of ``diagnosis.json``; None where the dataset has none.
-    seconds, version
-        How long the diagnosis took, and by which version it is.
+    seconds, threads, version
+        How long the diagnosis took, on how many threads, and by which version it is.
     """
 
     dataset: str
     answer: Answer
     diagnosis: Mapping[str, Any] | None
     seconds: float | None = None
+    threads: int = 1
     version: str | None = None
 
     @property
@@ -110,6 +111,7 @@ def _record(folder: Path, salt: object, answer: object, answers: Path) -> Record
         answer=truth,
         diagnosis=diagnosis,
         seconds=run.get("seconds"),
+        threads=run.get("threads", 1),
         version=run.get("version"),
     )
 

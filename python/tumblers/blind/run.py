@@ -35,6 +35,7 @@ def run(
     directory: str | PathLike[str],
     *,
     jobs: int | None = None,
+    threads: int = 1,
     only: Collection[int] | None = None,
     progress: bool | OnProgress = False,
 ) -> Done:
@@ -45,7 +46,9 @@ def run(
     directory
         The folder that `make` wrote.
     jobs
-        Number of processes, all cores by default; each diagnoses one dataset on one thread.
+        Number of processes, all cores by default; each diagnoses one dataset at a time.
+    threads
+        Threads of each diagnosis.
     only
         Numbers of the datasets to diagnose, all if None.
     progress
@@ -54,10 +57,12 @@ def run(
     Raises
     ------
     InputError
-        A folder without datasets, or a number of a dataset that is not there.
+        A folder without datasets, a number of a dataset that is not there, or no thread.
     OSError
         A folder that cannot be written to, or a full disk.
     """
+    if threads < 1:
+        raise InputError("threads", str(threads), "at least 1")
     folders = {int(path.name.removeprefix("dataset-")): path for path in sorted(Path(directory).glob("dataset-[0-9]*"))}
     if not folders:
         raise InputError(None, "no datasets", "a folder of `tumblers blind make`", directory)
@@ -68,7 +73,7 @@ def run(
     waiting = [path for path in chosen if not _is_done(path)]
     failed = 0
     with native_call("diagnoses", len(waiting), progress) as on_progress, workers(jobs) as pool:
-        futures: list[Future[bool]] = [pool.submit(_diagnose, path) for path in waiting]
+        futures: list[Future[bool]] = [pool.submit(_diagnose, path, threads) for path in waiting]
         for count, future in enumerate(as_completed(futures), start=1):
             failed += not future.result()
             if on_progress is not None:
@@ -85,7 +90,7 @@ def _is_done(folder: Path) -> bool:
     return same and (folder / DIAGNOSIS).exists()
 
 
-def _diagnose(folder: Path) -> bool:
+def _diagnose(folder: Path, threads: int) -> bool:
     """Diagnose a dataset; an error goes to its record, for one that fails must not stop the others."""
     from ..dataset import load
     from ..diagnosis import diagnose
@@ -94,11 +99,17 @@ def _diagnose(folder: Path) -> bool:
     files: dict[Path, bytes | memoryview] = {}
     error = None
     try:
-        files[folder / DIAGNOSIS] = diagnose(load(folder), jobs=1).to_json().encode()
+        files[folder / DIAGNOSIS] = diagnose(load(folder), jobs=threads).to_json().encode()
     except Exception as raised:
         error = f"{type(raised).__name__}: {' '.join(str(raised).split())}"
         (folder / DIAGNOSIS).unlink(missing_ok=True)
-    record = {"format": RECORD_FORMAT, "version": __version__, "seconds": perf_counter() - start, "error": error}
+    record = {
+        "format": RECORD_FORMAT,
+        "version": __version__,
+        "seconds": perf_counter() - start,
+        "threads": threads,
+        "error": error,
+    }
     # The record comes last: it says that the diagnosis is whole.
     write_files({**files, folder / RECORD: (json.dumps(record) + "\n").encode()})
     return error is None

@@ -96,8 +96,8 @@ class Scores:
         Dataset to the overlap of the trials that were pointed out with those affected.
     regions
         Axis to how many regions in which a cause acts were overlapped by half or more.
-    seconds_mean, seconds_longest
-        Time of a diagnosis, s.
+    seconds_mean, seconds_longest, threads
+        Time of a diagnosis, s, and the most threads that one had.
     criteria
         What has to hold.
     rows
@@ -118,6 +118,7 @@ class Scores:
     regions: Mapping[str, Share]
     seconds_mean: float | None
     seconds_longest: float | None
+    threads: int
     criteria: tuple[Criterion, ...]
     rows: tuple[Mapping[str, Any], ...]
     drawn: int
@@ -237,6 +238,7 @@ def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores
         regions=_regions(records),
         seconds_mean=mean(seconds) if seconds else None,
         seconds_longest=max(seconds) if seconds else None,
+        threads=max((r.threads for r in records), default=1),
         criteria=criteria,
         rows=tuple(_row(r) for r in records),
         drawn=len(records),

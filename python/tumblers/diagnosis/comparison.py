@@ -22,13 +22,13 @@ from numpy.typing import NDArray
 
 from ..dataset import Dataset
 from ..effects.base import Effect
-from .floor import TOLERANCES, Floor, build_floors, choose_steps, measure_sensitivity
+from .floor import SHARED, Floor, Sensitivity, build_floors, choose_steps, measure_sensitivity
 from .observed import observe
 from .pose import Path
 from .reading import Reader
-from .simulator import Simulator
+from .simulator import Job, Simulator
 
-__all__ = ["Comparison", "Residual"]
+__all__ = ["FAR", "Comparison", "Residual"]
 
 Floats = NDArray[np.float64]
 
@@ -38,6 +38,8 @@ _CLOCKS = np.linspace(-0.9, 0.9, 7)
 _OUTLIER = 6.0
 # A nominal number is not off by more than so many tolerances.
 _MOST_OFF = 3.0
+# A trial's track whose mean square is beyond this counts by its logarithm, and a number no more than this many sigmas.
+FAR, _FARTHEST = 3.0, 30.0
 # What a trial counts that the model cannot run at all, in sigmas.
 _NOT_RUN = 30.0
 # A tolerance is two standard deviations; a clock's offset is uniform within it.
@@ -59,7 +61,7 @@ class Residual:
     camera
         Heading (rad) and scale, shape (2,).
     tolerance
-        How far each nominal number is off, in its tolerance, shape (`TOLERANCES`,).
+        How far each nominal number is off, in its tolerance, and the step, shape (`SHARED`,).
     """
 
     trials: tuple[Floats, ...]
@@ -90,7 +92,7 @@ class Comparison:
     local_sigmas
         Standard deviations of each trial's clock (s) and origin (m), shape (trials, 3).
     shared_sigmas
-        Of the camera's heading (rad) and scale, and of the nominal numbers' tolerances (1), shape (2 + `TOLERANCES`,).
+        Of the camera's heading (rad) and scale, and of the nominal numbers' tolerances (1), shape (2 + `SHARED`,).
     """
 
     def __init__(self, dataset: Dataset, simulator: Simulator) -> None:
@@ -100,14 +102,24 @@ class Comparison:
             Reader.of(observed, simulator.nominal(i), dataset.trials[i].duration_s)
             for i, observed in enumerate(observe(dataset))
         )
-        self.nominal_paths = choose_steps(simulator, self.readers)
-        self._nominal_sensitivity = measure_sensitivity(simulator, self.readers)
-        self.floors: tuple[Floor, ...] = build_floors(self.readers, [self._nominal_sensitivity])
+        choose_steps(simulator, self.readers)
+        self.nominal_paths: list[Path | None]
+        self.floors: tuple[Floor, ...]
+        self._known: dict[tuple[Effect, ...], list[Sensitivity]]
+        self._nominal_log_determinant: float
+        self._start()
         self._bounds, self.local_sigmas = self._tolerances()
         sensor = dataset.sensor
         camera = np.array([radians(sensor.heading_tolerance_deg), sensor.scale_tolerance])
-        self._shared_bounds = np.concatenate([camera, np.full(len(TOLERANCES), _MOST_OFF)])
-        self.shared_sigmas = np.concatenate([np.maximum(_CAMERA_SIGMA * camera, 1e-12), np.ones(len(TOLERANCES))])
+        self._shared_bounds = np.concatenate([camera, np.full(SHARED, _MOST_OFF)])
+        self.shared_sigmas = np.concatenate([np.maximum(_CAMERA_SIGMA * camera, 1e-12), np.ones(SHARED)])
+
+    def _start(self) -> None:
+        """Take the nominal model's paths and noise."""
+        self.nominal_paths = self.simulator.run([Job(i) for i in range(len(self.readers))])
+        self._known = {}
+        self.take_noise_of(())
+        self._nominal_log_determinant = sum(floor.log_determinant for floor in self.floors)
 
     def _tolerances(self) -> tuple[Floats, Floats]:
         sensor = self.dataset.sensor
@@ -118,18 +130,38 @@ class Comparison:
         sigmas = bounds * np.array([_CLOCK_SIGMA, _ORIGIN_SIGMA, _ORIGIN_SIGMA])
         return bounds, np.maximum(sigmas, 1e-12)
 
-    def measure_noise_around(self, effects: tuple[Effect, ...]) -> None:
-        """Let the noise hold what moves the paths around a hypothesis too: older residuals do not compare any more.
+    def halve_steps_for(self, effects: tuple[Effect, ...]) -> bool:
+        """Halve the steps that are too long for a hypothesis, and return whether there were any.
+
+        Where there were, the noise is the nominal model's again, and older residuals do not compare any more.
 
         Parameters
         ----------
         effects
-            The hypothesis; none for the nominal model alone.
+            The hypothesis.
         """
-        around = [self._nominal_sensitivity]
-        if effects:
-            around.append(measure_sensitivity(self.simulator, self.readers, effects))
-        self.floors = build_floors(self.readers, around)
+        if not choose_steps(self.simulator, self.readers, effects):
+            return False
+        self._start()
+        return True
+
+    def take_noise_of(self, *around: tuple[Effect, ...]) -> None:
+        """Let the noise be what moves the paths around some hypotheses; residuals compare by `log_determinant` too.
+
+        Parameters
+        ----------
+        around
+            The hypotheses, no effects for the nominal model.
+        """
+        for effects in around:
+            if effects not in self._known:
+                self._known[effects] = measure_sensitivity(self.simulator, self.readers, effects)
+        self.floors = build_floors(self.readers, [self._known[effects] for effects in around])
+
+    @property
+    def log_determinant(self) -> float:
+        """Ln det of the noise's covariance over that of the nominal model's."""
+        return sum(floor.log_determinant for floor in self.floors) - self._nominal_log_determinant
 
     @property
     def count(self) -> int:
@@ -142,6 +174,19 @@ class Comparison:
         return tuple(
             sum(int(kept.sum()) for kept in floor.valid.values()) + len(floor.outcome_scale) for floor in self.floors
         )
+
+    def weight(self, trial: int, values: Floats) -> float:
+        """Return how much a trial's track counts: less where the model is far from it (`Fitter`'s objective).
+
+        Parameters
+        ----------
+        trial
+            Its place in the dataset.
+        values
+            Its whitened differences, shape (n_i,).
+        """
+        track = values[: self.sizes[trial] - len(self.floors[trial].outcome_scale)]
+        return 1.0 / (1.0 + float(np.mean(np.minimum(track**2, _FARTHEST**2))) / FAR) if len(track) else 1.0
 
     def labels(self, trial: int) -> list[tuple[str, Floats]]:
         """Return the channels (and outcomes) of a trial's differences and the times of each, s, in their order.
@@ -177,7 +222,7 @@ class Comparison:
             whitened difference depends on the frames before it alone, so that a part is compared as it should be.
         """
         count = len(self.readers)
-        local, shared = np.zeros((count, 3)), np.zeros(2 + len(TOLERANCES))
+        local, shared = np.zeros((count, 3)), np.zeros(2 + SHARED)
         train = range(count) if train is None else train
         if fit_nuisances:
             local[:, 0] = [self._clock(i, path, share) for i, path in enumerate(paths)]
@@ -258,6 +303,9 @@ class Comparison:
             table = np.vstack([table, np.column_stack([np.zeros((len(outcomes), 5)), outcomes])])
             a, r = table[:, :3], table[:, 5] - floor.tolerance @ shared[2:]
             g = np.hstack([table[:, 3:5], -floor.tolerance])
+            # One trial that the model cannot follow must not turn the camera of all.
+            counted = np.sqrt(self.weight(i, r))
+            a, g, r = counted * a, counted * g, counted * r
             if share < 1.0:
                 counts = self._counts(i, share)
                 a, g, r = a * counts[:, None], g * counts[:, None], r * counts

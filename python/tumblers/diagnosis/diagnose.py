@@ -14,8 +14,9 @@ from ..effects.base import Effect
 from ..effects.catalogue import CATALOGUE, get
 from ..errors import InputError, show
 from ..version import __version__
-from .attribute import Attribution, Contender, OnPhase, attribute
+from .attribute import Attribution, attribute
 from .comparison import Comparison
+from .contender import Contender
 from .diagnosis import Diagnosis
 from .estimate import intervals, samples
 from .fit import Fitter, robust_cost
@@ -25,6 +26,7 @@ from .localise import localise
 from .next_trial import next_trials
 from .overlay import overlays
 from .result import EffectEstimate, Interval, NextTrial, RankedHypothesis, TrialFloor
+from .search import OnPhase
 from .simulator import Simulator
 from .verdict import judge, ties
 from .wrench import missing_wrench, wrench_regions
@@ -124,7 +126,7 @@ class _Conclusion:
         floors, proposed = self._floors(), self._next(chosen, tied, tell)
         tell("where the gap lies", 0, 2)
         # Where the nominal model parts from the data is seen against the noise around it, not around other hypotheses.
-        comparison.measure_noise_around(())
+        comparison.take_noise_of(())
         still = comparison.residual(comparison.nominal_paths)
         regions, maps = localise(comparison, still, comparison.nominal_paths)
         wrench = None

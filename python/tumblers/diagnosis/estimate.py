@@ -1,8 +1,9 @@
 """Intervals of a hypothesis's parameters, and samples of its effects.
 
-Laplace's standard deviations give two points of each parameter's profile, `u ± 1.645 σ`, the other parameters following
-along the ridge of the posterior; how much the objective really rises there stretches or shrinks each side so that it
-rises by 1.645², the 90 % interval of a likelihood ratio.
+With q the derivative of a parameter v by the fit's coordinates u and C their posterior covariance, Laplace's standard
+deviation is `σ = √(qᵀ C q)`, and the other coordinates follow along the ridge `u ± t C q/σ` of the posterior. How much
+the objective really rises there stretches or shrinks each side so that it rises by 1.645², the 90 % interval of a
+likelihood ratio; the end is `v ± t σ`. Where the ridge leaves the range, the rise is measured at its edge.
 """
 
 from __future__ import annotations
@@ -11,8 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..effects.base import Effect
-from .attribute import Attribution, Contender
+from .attribute import Attribution
+from .contender import Contender
 from .fit import Fitter
+from .hypothesis import Hypothesis
 from .result import Interval
 
 __all__ = ["intervals", "samples"]
@@ -23,7 +26,10 @@ _SIDE = 1.645
 # A profile that is flatter or steeper than this is not trusted further in one round.
 _LEAST_RISE, _MOST_RISE = 0.3, 30.0
 _ROUNDS = 2
+# So far must the ridge go inside the range, in standard deviations, for a rise that means something.
+_LEAST_WAY = 0.2
 _IDENTIFIED = 0.5
+_HALF_TURN = 180.0
 
 
 def intervals(fitter: Fitter, attribution: Attribution, contender: Contender) -> dict[tuple[str, str], Interval]:
@@ -40,30 +46,56 @@ def intervals(fitter: Fitter, attribution: Attribution, contender: Contender) ->
     if fit is None:
         return {}
     hypothesis = fit.hypothesis
+    gradients = _gradients(hypothesis, fit.point)
     covariance = attribution.covariance(contender)
-    deviation = np.sqrt(np.diag(covariance))
-    ridges = covariance / np.diag(covariance)
-    sides = [(j, sign) for j in range(len(fit.point)) for sign in (-1.0, 1.0)]
-    reach = {(j, sign): _SIDE * deviation[j] for j, sign in sides}
+    deviation = np.sqrt(np.maximum(np.einsum("jp,pq,jq->j", gradients, covariance, gradients), 0.0))
+    ridges = gradients @ covariance / np.maximum(deviation, 1e-300)[:, None]
+    sides = [(j, sign) for j in range(len(fit.point)) if deviation[j] > 0.0 for sign in (-1.0, 1.0)]
+    reach = dict.fromkeys(((j, sign) for j in range(len(fit.point)) for sign in (-1.0, 1.0)), _SIDE)
+    inside = {side: _way_inside(hypothesis, fit.point, side[1] * ridges[side[0]]) for side in sides}
+    sides = [side for side in sides if inside[side] > _LEAST_WAY]
     for _ in range(_ROUNDS):
-        points = [
-            np.clip(fit.point + sign * reach[j, sign] * ridges[:, j], hypothesis.low, hypothesis.high)
-            for j, sign in sides
-        ]
+        ways = [min(reach[side], inside[side]) for side in sides]
+        points = [fit.point + sign * way * ridges[j] for (j, sign), way in zip(sides, ways, strict=True)]
         residuals = fitter.residuals(hypothesis, points)
-        for (j, sign), point, residual in zip(sides, points, residuals, strict=True):
+        for side, way, point, residual in zip(sides, ways, points, residuals, strict=True):
             rise = (fitter.cost(residual, point) - contender.cost) / attribution.dispersion
-            reach[j, sign] *= float(np.sqrt(_SIDE**2 / np.clip(rise, _LEAST_RISE, _MOST_RISE)))
-    ends = {
-        (j, sign): float(np.clip(fit.point[j] + sign * reach[j, sign], hypothesis.low[j], hypothesis.high[j]))
-        for j, sign in sides
-    }
+            # What the rise should be at this way.
+            share = (way / reach[side]) ** 2
+            reach[side] *= float(np.sqrt(_SIDE**2 / np.clip(rise / share, _LEAST_RISE, _MOST_RISE)))
     out = {}
-    for j, key in enumerate(hypothesis.keys):
-        value = [hypothesis.neutral[j] + hypothesis.scale[j] * u for u in (fit.point[j], ends[j, -1.0], ends[j, 1.0])]
-        width = (ends[j, 1.0] - ends[j, -1.0]) / max(hypothesis.high[j] - hypothesis.low[j], 1e-300)
-        out[key] = Interval(float(value[0]), float(value[1]), float(value[2]), bool(width < _IDENTIFIED))
+    estimates = hypothesis.values(fit.point)
+    parameters = [parameter for kind in hypothesis.kinds for parameter in kind.parameters]
+    for j, (key, parameter) in enumerate(zip(hypothesis.keys, parameters, strict=True)):
+        low, high = hypothesis.ranges[j]
+        if parameter.turns:
+            low, high = estimates[j] - _HALF_TURN, estimates[j] + _HALF_TURN
+        ends = [float(np.clip(estimates[j] + sign * reach[j, sign] * deviation[j], low, high)) for sign in (-1.0, 1.0)]
+        width = (ends[1] - ends[0]) / max(high - low, 1e-300)
+        out[key] = Interval(float(estimates[j]), ends[0], ends[1], bool(width < _IDENTIFIED))
     return out
+
+
+def _gradients(hypothesis: Hypothesis, point: Floats) -> Floats:
+    """Return the derivatives of the parameters by the coordinates, shape (p, p)."""
+    step = 1e-6
+    columns = []
+    for j in range(len(point)):
+        # Towards the inside of the range.
+        signed = -step if point[j] + step > hypothesis.high[j] else step
+        moved = hypothesis.values(point + signed * np.eye(len(point))[j]) - hypothesis.values(point)
+        turns = [parameter.turns for kind in hypothesis.kinds for parameter in kind.parameters]
+        moved = np.where(turns, (moved + _HALF_TURN) % (2.0 * _HALF_TURN) - _HALF_TURN, moved)
+        columns.append(moved / signed)
+    return np.column_stack(columns)
+
+
+def _way_inside(hypothesis: Hypothesis, point: Floats, direction: Floats) -> float:
+    """Return how far a point can go in a direction before it leaves the range."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ways = np.where(direction > 0.0, (hypothesis.high - point) / direction, (hypothesis.low - point) / direction)
+    ways = np.where(np.abs(direction) > 1e-12, ways, np.inf)
+    return float(max(np.min(ways), 0.0))
 
 
 def samples(attribution: Attribution, contender: Contender, count: int, seed: int) -> tuple[tuple[Effect, ...], ...]:

@@ -3,11 +3,14 @@
 The objective is
 
 ```text
-Σ ρ(r_i) + Σ (nuisance/σ)² + Σ (u/0.5)²,      ρ Huber's, quadratic to 4 sigmas
+Σ_t κ n_t ln(1 + Σ ρ(r)/(κ n_t)) + Σ ρ(outcomes) + Σ (nuisance/σ)² + Σ (u/0.5)²,      ρ Huber's, quadratic to 4 sigmas
 ```
 
-over the whitened differences r of the trials that are fitted, the sensor's nuisances at their optimum for every point.
-The derivatives are finite differences, all of them one native batch.
+over the whitened differences r of the n_t numbers of each track that is fitted, the sensor's nuisances at their optimum
+for every point. The logarithm is what is left of a trial's likelihood when its noise may be any multiple of the floor:
+past a threshold, or where motion is chaotic, a trial can be far from the best of models, and must not decide alone.
+Least squares see it as a weight of the trial, `1/(1 + mean square/κ)`, taken at the start and once more on the way. The
+derivatives are finite differences, all of them one native batch.
 """
 
 from __future__ import annotations
@@ -19,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
-from .comparison import Comparison, Residual
+from .comparison import FAR, Comparison, Residual
 from .hypothesis import PRIOR_SIGMA, Hypothesis
 from .pose import Path
 from .simulator import Job
@@ -28,6 +31,8 @@ __all__ = ["HUBER", "Fit", "Fitter", "robust_cost"]
 
 Floats = NDArray[np.float64]
 
+# How often the trials' weights are taken anew, and the change of one that asks for it.
+_WEIGHINGS, _REWEIGHED = 2, 1.3
 # Where the loss turns from square to linear, in sigmas.
 HUBER = 4.0
 # A derivative's step changes the differences by about this much (root mean square), within these bounds.
@@ -114,7 +119,24 @@ class Fitter:
         """Return the objective."""
         chosen = self.trials if train is None else train
         prior = float(np.sum(residual.prior**2) + np.sum((point / PRIOR_SIGMA) ** 2))
-        return robust_cost(residual.over(chosen)) + prior
+        return sum(self.trial_cost(residual, i) for i in chosen) + prior
+
+    def trial_cost(self, residual: Residual, trial: int) -> float:
+        """Return what one trial adds to the objective."""
+        values = residual.trials[trial]
+        track = len(values) - len(self.comparison.floors[trial].outcome_scale)
+        far = FAR * max(track, 1)
+        return far * float(np.log1p(robust_cost(values[:track]) / far)) + robust_cost(values[track:])
+
+    def _weights(self, residual: Residual, chosen: Sequence[int]) -> Floats:
+        """Square roots of the weights of the trials' numbers, 1 for outcomes, shape (n,)."""
+        rows = []
+        for i in chosen:
+            row = np.ones(len(residual.trials[i]))
+            track = len(row) - len(self.comparison.floors[i].outcome_scale)
+            row[:track] = np.sqrt(self.comparison.weight(i, residual.trials[i]))
+            rows.append(row)
+        return np.concatenate(rows) if rows else np.empty(0)
 
     def scan(
         self, hypotheses: Sequence[Hypothesis], base: Sequence[Floats], still: Residual, slopes: Floats | None = None
@@ -137,14 +159,15 @@ class Fitter:
         """
         starts = [[np.clip(b + s, h.low, h.high) for s in h.starts] for h, b in zip(hypotheses, base, strict=True)]
         found = self._batch(hypotheses, starts)
-        here = still.over(self.trials)
+        weights = self._weights(still, self.trials)
+        here = weights * still.over(self.trials)
         first = np.empty((len(here), 0)) if slopes is None else slopes[: len(here)]
         tried: list[list[tuple[float, int, Floats]]] = []
         guesses: list[list[Floats]] = []
         for h, b, points, residuals in zip(hypotheses, base, starts, found, strict=True):
             tried.append([(self.cost(still, b), 0, b)])
             tried[-1] += [(self.cost(r, p), 1 + n, p) for n, (r, p) in enumerate(zip(residuals, points, strict=True))]
-            changes = [r.over(self.trials) - here for r in residuals]
+            changes = [weights * r.over(self.trials) - here for r in residuals]
             columns = [[k] for k in range(len(points))]
             if len(points) > 1 and len(b) - first.shape[1] > 1:
                 columns.append(list(range(len(points))))
@@ -211,8 +234,15 @@ class Fitter:
                 known[key] = self.residuals(hypothesis, [point], chosen, share)[0]
             return known[key]
 
+        inside = np.clip(start, hypothesis.low, hypothesis.high)
+        fixed = hypothesis.high <= hypothesis.low
+        low, high = np.where(fixed, -1e-9, hypothesis.low), np.where(fixed, 1e-9, hypothesis.high)
+        margin = 1e-9 * (high - low)
+        point = np.clip(inside, low + margin, high - margin)
+        weights = self._weights(at(point), chosen)
+
         def rows(residual: Residual, point: Floats) -> Floats:
-            return np.concatenate([residual.over(chosen), residual.prior, point / PRIOR_SIGMA])
+            return np.concatenate([weights * residual.over(chosen), residual.prior, point / PRIOR_SIGMA])
 
         def jacobian(point: Floats) -> Floats:
             here = rows(at(point), point)
@@ -225,24 +255,27 @@ class Fitter:
             steps[:] = np.clip(_CHANGE / np.maximum(slope, 1e-12), _LEAST_STEP, _MOST_STEP)
             return np.column_stack(columns)
 
-        inside = np.clip(start, hypothesis.low, hypothesis.high)
-        fixed = hypothesis.high <= hypothesis.low
-        low, high = np.where(fixed, -1e-9, hypothesis.low), np.where(fixed, 1e-9, hypothesis.high)
-        margin = 1e-9 * (high - low)
-        result = least_squares(
-            lambda point: rows(at(point), point),
-            np.clip(inside, low + margin, high - margin),
-            jac=jacobian,
-            bounds=(low, high),
-            loss="huber",
-            f_scale=HUBER,
-            max_nfev=evaluations,
-            ftol=1e-3,
-            xtol=1e-4,
-            gtol=1e-3,
-        )
-        residual = at(result.x)
-        fitted = np.concatenate([residual.over(chosen), residual.prior])
-        weights = np.minimum(1.0, HUBER / np.maximum(np.abs(fitted), 1e-12)) ** 0.5
-        slopes = jacobian(result.x)[: len(fitted)] * weights[:, None]
-        return Fit(hypothesis, result.x, residual, self.cost(residual, result.x, chosen), slopes)
+        for weighing in range(_WEIGHINGS):
+            result = least_squares(
+                lambda point: rows(at(point), point),
+                point,
+                jac=jacobian,
+                bounds=(low, high),
+                loss="huber",
+                f_scale=HUBER,
+                max_nfev=evaluations if weighing == 0 else max(evaluations // 2, 2),
+                ftol=1e-3,
+                xtol=1e-4,
+                gtol=1e-3,
+            )
+            if self.cost(at(result.x), result.x, chosen) <= self.cost(at(point), point, chosen):
+                point = result.x
+            before, weights = weights, self._weights(at(point), chosen)
+            change = np.max(np.abs(np.log(weights / before)), initial=0.0)
+            if change < np.log(_REWEIGHED):
+                break
+        residual = at(point)
+        fitted = np.concatenate([weights * residual.over(chosen), residual.prior])
+        robust = np.minimum(1.0, HUBER / np.maximum(np.abs(fitted), 1e-12)) ** 0.5
+        slopes = jacobian(point)[: len(fitted)] * robust[:, None]
+        return Fit(hypothesis, point, residual, self.cost(residual, point, chosen), slopes)

@@ -3,19 +3,23 @@
 The differences of one channel of one trial, at times t, count as drawn from
 
 ```text
-Σ = σ² 1 + α² d dᵀ + α² diag(d̂²) + (d̄²/T) min(t_i, t_j) + Σ_p diag(d̂_p²)
+Σ = σ² 1 + α² d dᵀ + β² diag(d̂²) + (d̄²/T) min(t_i, t_j) + γ² Σ_p diag(d̂_p²)
 ```
 
 σ is the sensor's noise, d the change of the path when the step is halved, d̂ its greatest size at this frame and the
 next ones (when the body snaps over, a little too early or late is a large difference for a frame), d̄ its root mean
 square (a path that has been knocked off its course stays off it: a random walk), T the trial's time, and d_p the change
-with each nominal number moved by its tolerance. Multiplied by the inverse of the Cholesky factor of Σ, differences are
-plain numbers of unit variance; where the walk dominates they are the displacements from frame to frame, so that a
-stride, not a place, is compared. What the tolerances change alike in all trials is left to the fit: `d_p`, whitened,
-are the columns of nuisances with unit variance.
+with each nominal number moved by its tolerance; α = 2, β = 1, γ = 0.3. Multiplied by the inverse of the Cholesky factor
+of Σ, differences are plain numbers of unit variance; where the walk dominates they are the displacements from frame to
+frame, so that a stride, not a place, is compared.
 
-A strong effect can make a motion chaotic that was not. Σ therefore adds the changes around the nominal model and around
-the best hypothesis so far; it is the same for all hypotheses, so that they can be compared.
+What the tolerances change alike in all trials is left to the fit: `d_p`, whitened,
+are the columns of nuisances with unit variance. So is the change to the longest step and, where the lab leaves it open,
+to the formats' own torque scheme: numbers that were themselves computed, in whatever step, are not taken for physics.
+
+A strong effect can make a motion chaotic that was not, or end a chaos. Each hypothesis that counts therefore has its
+own Σ, with the changes around itself, and pays for it: a likelihood has ln det Σ beside the squares, so that nothing is
+explained by being vague. For what is shown of several hypotheses together, Σ adds the changes around each.
 """
 
 from __future__ import annotations
@@ -35,7 +39,7 @@ from .pose import Path
 from .reading import Reader
 from .simulator import STEPS_S, Edit, Job, Simulator
 
-__all__ = ["TOLERANCES", "Floor", "Sensitivity", "build_floors", "choose_steps", "measure_sensitivity"]
+__all__ = ["SHARED", "TOLERANCES", "Floor", "Sensitivity", "build_floors", "choose_steps", "measure_sensitivity"]
 
 Floats = NDArray[np.float64]
 _NO_LOCAL, _NO_CAMERA = np.zeros(3), np.zeros(2)
@@ -51,10 +55,16 @@ TOLERANCES = {
     "length": 0.001,
     "height": 0.001,
 }
+# Nuisances that all trials share beside the camera's: the tolerances, and the step.
+SHARED = len(TOLERANCES) + 1
 # The step is halved until this moves the path by less, in noise sigmas.
 _GOOD_ENOUGH = 0.7
+_FINEST_S = STEPS_S[-1] * (1.0 + 1e-9)
 # The error of a scheme of first order is twice what halving the step shows.
 _ALPHA = 2.0
+# What of a change is not foretold for a single frame: of the step's, of a tolerance's. With these, not with more, the
+# true effects of datasets whose truth was known were likeliest, and their mean square below 1.
+_STEP_SPREAD, _TOLERANCE_SPREAD = 1.0, 0.3
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,8 +80,10 @@ class Floor:
     outcome_scale
         By kind of outcome, what its scaled difference is multiplied by, at most 1.
     tolerance
-        Whitened change of the differences with each nominal number moved by its tolerance, channels then outcomes,
-        shape (k, `TOLERANCES`).
+        Whitened change of the differences with each nominal number moved by its tolerance, and in the longest step,
+        channels then outcomes, shape (k, `SHARED`).
+    log_determinant
+        ln det of the covariances of all channels and outcomes.
     numerical_sigmas
         Root mean square change of the path when the step is halved, in noise sigmas.
     tolerance_sigmas
@@ -82,6 +94,7 @@ class Floor:
     valid: dict[str, NDArray[np.bool_]]
     outcome_scale: dict[str, float]
     tolerance: Floats
+    log_determinant: float
     numerical_sigmas: float
     tolerance_sigmas: float
 
@@ -144,35 +157,41 @@ class Sensitivity:
         Change of the differences by channel, m or rad, and of the outcomes' terms, when the step is halved.
     tolerances, tolerance_terms
         The same with each nominal number moved by its tolerance.
+    coarse, coarse_terms
+        The same in the longest step and the scheme of `Simulator.coarse`.
     """
 
     numerical: dict[str, Floats]
     numerical_terms: dict[str, float]
+    coarse: dict[str, Floats]
+    coarse_terms: dict[str, float]
     tolerances: list[dict[str, Floats]]
     tolerance_terms: list[dict[str, float]]
 
 
-def choose_steps(simulator: Simulator, readers: tuple[Reader, ...]) -> list[Path | None]:
-    """Choose each trial's step, and return the nominal paths, None where the model cannot be run.
+def choose_steps(simulator: Simulator, readers: tuple[Reader, ...], effects: tuple[Effect, ...] = ()) -> bool:
+    """Halve the steps of the trials in which that shows, and return whether there was any.
 
     Parameters
     ----------
     simulator
-        Whose steps are halved where halving them shows.
+        Whose steps are halved, down to the last of `STEPS_S`.
     readers
         Of the dataset's trials.
+    effects
+        The hypothesis around which it is looked at.
     """
-    trials = range(len(readers))
-    paths = simulator.run([Job(i) for i in trials] + [Job(i, divisor=2) for i in trials])
-    nominal, halved = paths[: len(readers)], paths[len(readers) :]
-    for _ in STEPS_S[1:]:
-        coarse = [i for i in trials if _distance(readers[i], nominal[i], halved[i]) > _GOOD_ENOUGH]
+    changed = False
+    waiting = [i for i in range(len(readers)) if simulator.step_s[i] > _FINEST_S]
+    while waiting:
+        paths = simulator.run([Job(i, effects) for i in waiting] + [Job(i, effects, divisor=2) for i in waiting])
+        pairs = zip(waiting, paths[: len(waiting)], paths[len(waiting) :], strict=True)
+        coarse = [i for i, path, halved in pairs if _distance(readers[i], path, halved) > _GOOD_ENOUGH]
         for i in coarse:
             simulator.step_s[i] *= 0.5
-            nominal[i] = halved[i]
-        for i, path in zip(coarse, simulator.run([Job(i, divisor=2) for i in coarse]), strict=True):
-            halved[i] = path
-    return nominal
+        changed = changed or bool(coarse)
+        waiting = [i for i in coarse if simulator.step_s[i] > _FINEST_S]
+    return changed
 
 
 def measure_sensitivity(
@@ -189,17 +208,20 @@ def measure_sensitivity(
     """
     trials = range(len(readers))
     jobs = [Job(i, effects) for i in trials] + [Job(i, effects, divisor=2) for i in trials]
-    jobs += [Job(i, effects, edit=edit) for i in trials for edit in _EDITS]
+    edits = (simulator.coarse, *_EDITS)
+    jobs += [Job(i, effects, edit=edit) for i in trials for edit in edits]
     paths = simulator.run(jobs)
-    count, first = len(_EDITS), 2 * len(readers)
+    count, first = len(edits), 2 * len(readers)
     out = []
     for i, reader in enumerate(readers):
         here, halved = paths[i], paths[len(readers) + i]
-        moved = paths[first + count * i : first + count * (i + 1)]
+        coarse, *moved = paths[first + count * i : first + count * (i + 1)]
         out.append(
             Sensitivity(
                 _change(reader, here, halved),
                 _outcome_change(reader, here, halved),
+                _change(reader, here, coarse),
+                _outcome_change(reader, here, coarse),
                 [_change(reader, here, other) for other in moved],
                 [_outcome_change(reader, here, other) for other in moved],
             )
@@ -245,6 +267,11 @@ def _distance(reader: Reader, path: Path | None, other: Path | None) -> float:
     return max([_rms(reader, _change(reader, path, other)), *(abs(term) for term in terms)])
 
 
+def _around(change: Floats) -> Floats:
+    """Return the greatest size of a change at each frame and its neighbours, shape (n,)."""
+    return np.asarray(maximum_filter1d(np.abs(change), 3))
+
+
 def _floor(reader: Reader, around: Sequence[Sensitivity]) -> Floor:
     observed = reader.observed
     time = np.maximum(observed.time_s, 0.0)
@@ -257,11 +284,11 @@ def _floor(reader: Reader, around: Sequence[Sensitivity]) -> Floor:
         for each in around if len(t) else ():
             if name in each.numerical:
                 d = each.numerical[name][valid[name]]
-                covariance += _ALPHA**2 * (np.outer(d, d) + np.diag(maximum_filter1d(np.abs(d), 3) ** 2))
+                covariance += _ALPHA**2 * np.outer(d, d) + np.diag((_STEP_SPREAD * _around(d)) ** 2)
                 covariance += float(np.mean(d**2)) / reader.duration_s * np.minimum.outer(t, t)
             for change in each.tolerances:
                 if name in change:
-                    covariance += np.diag(maximum_filter1d(np.abs(change[name][valid[name]]), 3) ** 2)
+                    covariance += np.diag((_TOLERANCE_SPREAD * _around(change[name][valid[name]])) ** 2)
         whiten[name] = np.linalg.inv(np.linalg.cholesky(covariance)) if len(t) else covariance
     scale = {}
     for term in reader.outcome_kinds:
@@ -277,13 +304,21 @@ def _floor(reader: Reader, around: Sequence[Sensitivity]) -> Floor:
             [whiten[name] @ change.get(name, np.zeros(len(time)))[valid[name]] for name in whiten]
             + [np.array([terms.get(term, 0.0) * scale[term] for term in scale])]
         )
-        for change, terms in zip(last.tolerances, last.tolerance_terms, strict=True)
+        for change, terms in (
+            *zip(last.tolerances, last.tolerance_terms, strict=True),
+            (last.coarse, last.coarse_terms),
+        )
     ]
     return Floor(
         whiten=whiten,
         valid=valid,
         outcome_scale=scale,
         tolerance=np.column_stack(columns),
+        # Of the inverse Cholesky factors only the diagonals count.
+        log_determinant=-2.0
+        * float(
+            sum(np.sum(np.log(np.diag(w))) for w in whiten.values()) + sum(np.log(value) for value in scale.values())
+        ),
         numerical_sigmas=max(_rms(reader, each.numerical) for each in around),
         tolerance_sigmas=max(float(np.sqrt(sum(_rms(reader, c) ** 2 for c in each.tolerances))) for each in around),
     )

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..field import RotatingField, StaticField
-from .attribute import Contender
 from .comparison import Residual
+from .contender import Contender
 from .fit import Fitter, robust_cost
 from .result import Gap, Interval
 from .simulator import Job

@@ -23,18 +23,21 @@ PRIOR_SIGMA = 0.5
 class Hypothesis:
     """Some effects, and the ranges of their parameters.
 
-    A parameter v counts as `u = (v - neutral) / scale`, with the farther end of its range at `|u| = 1`.
+    A coordinate c of a fit counts as `u = (c - neutral) / scale`, with the farther end of its range at `|u| = 1`; the
+    coordinates are the parameters, unless an effect says otherwise (`Effect.to_fit`).
 
     Attributes
     ----------
     kinds
         The effects' classes.
     neutral, scale
-        Of every parameter, shape (p,).
+        Of every coordinate, shape (p,).
     low, high
         Bounds of u, shape (p,).
     starts
         Points u from which a fit may start, shape (k, p).
+    ranges
+        Plausible range of every parameter, shape (p, 2).
     """
 
     kinds: tuple[type[Effect], ...]
@@ -43,26 +46,30 @@ class Hypothesis:
     low: Floats
     high: Floats
     starts: Floats
+    ranges: Floats
 
     @classmethod
     def of(cls, kind: type[Effect], scenarios: Iterable[Scenario]) -> Hypothesis:
         """Return the hypothesis of one effect, over what is plausible in any of the scenarios."""
-        neutral = np.array([p.neutral for p in kind.parameters])
+        neutral = np.array(kind.to_fit([p.neutral for p in kind.parameters]))
         low, high = neutral.copy(), neutral.copy()
+        widest = np.array([(p.neutral, p.neutral) for p in kind.parameters])
         points: dict[tuple[float, ...], None] = {}
         for scenario in scenarios:
-            ranges = np.array(kind.ranges(scenario))
+            ranges = np.array(kind.fit_ranges(scenario))
             low, high = np.minimum(low, ranges[:, 0]), np.maximum(high, ranges[:, 1])
-            points |= dict.fromkeys(kind.starts(scenario))
+            own = np.array(kind.ranges(scenario))
+            widest = np.column_stack([np.minimum(widest[:, 0], own[:, 0]), np.maximum(widest[:, 1], own[:, 1])])
+            points |= dict.fromkeys(kind.to_fit(start) for start in kind.starts(scenario))
         scale = np.maximum(np.maximum(high - neutral, neutral - low), 1e-300)
         starts = np.array([(np.array(point) - neutral) / scale for point in points]).reshape(-1, len(neutral))
-        return cls((kind,), neutral, scale, (low - neutral) / scale, (high - neutral) / scale, starts)
+        return cls((kind,), neutral, scale, (low - neutral) / scale, (high - neutral) / scale, starts, widest)
 
     def __add__(self, other: Hypothesis) -> Hypothesis:
         """Both sets of effects; only `other` has starts, from this one's neutral point."""
         joined = {
             name: np.concatenate([getattr(self, name), getattr(other, name)])
-            for name in ("neutral", "scale", "low", "high")
+            for name in ("neutral", "scale", "low", "high", "ranges")
         }
         starts = np.hstack([np.zeros((len(other.starts), len(self.neutral))), other.starts])
         return Hypothesis(self.kinds + other.kinds, starts=starts, **joined)
@@ -90,4 +97,8 @@ class Hypothesis:
     def values(self, point: Sequence[float] | Floats) -> Floats:
         """Return the parameters' values at a point u, shape (p,)."""
         clipped = np.clip(np.asarray(point, dtype=np.float64), self.low, self.high)
-        return self.neutral + self.scale * clipped
+        coordinates = (self.neutral + self.scale * clipped).tolist()
+        values: list[float] = []
+        for kind in self.kinds:
+            values += kind.from_fit(coordinates[len(values) : len(values) + len(kind.parameters)])
+        return np.array(values)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .attribute import Contender
 from .comparison import Comparison
+from .contender import Contender
 from .fit import Fitter
 from .held_out import HeldOut
 from .pose import Path, body_axis, heading_of, tilt_of

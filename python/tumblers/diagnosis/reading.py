@@ -33,8 +33,8 @@ _CLIMBED = 0.1
 _BLUR = 0.05
 # A human who writes down the wrong outcome.
 _LAPSE = 0.01
-# The robot has come to rest in this last share of a static trial.
-_REST_SHARE = 0.1
+# The robot has come to rest in this last share of a static trial; that many moments of it are averaged.
+_REST_SHARE, _REST_MOMENTS = 1.0 / 3.0, 50
 _TIME_STEP_S = 2e-4
 
 
@@ -132,7 +132,7 @@ class Reader:
         """Return what the model says of each kind of outcome: the share climbed, m/s, degrees."""
         ends, _ = path.at(np.array([0.0, self.duration_s]))
         way = float(ends[1, 1] - ends[0, 1])
-        rest = np.linspace((1.0 - _REST_SHARE) * self.duration_s, self.duration_s, 8)
+        rest = np.linspace((1.0 - _REST_SHARE) * self.duration_s, self.duration_s, _REST_MOMENTS)
         return {
             "climbed_share": way / self.level_way_m if self.level_way_m > 0.0 else float(np.sign(way)),
             "mean_speed_m_per_s": way / self.duration_s,

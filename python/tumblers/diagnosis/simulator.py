@@ -6,6 +6,7 @@ from collections import OrderedDict
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +28,7 @@ __all__ = ["STEPS_S", "Edit", "Job", "Simulator"]
 _LONGEST_INTERVAL_S = 2e-3
 _ROWS_PER_CYCLE = 60
 # Steps that are tried, the first of them first; a cycle of the field has so many at least.
-STEPS_S = (5.0e-4, 2.5e-4)
+STEPS_S = (5.0e-4, 2.5e-4, 1.25e-4)
 _STEPS_PER_CYCLE = 100
 
 # Rollouts that are kept: a fit often comes back to a point.
@@ -118,7 +119,7 @@ class Simulator:
         InputError
             An effect that cannot be added to this trial.
         """
-        scenario = self.nominal(job.trial, job.divisor)
+        scenario = self.nominal(job.trial, job.divisor * self._finer(job))
         if job.edit is not None:
             scenario = job.edit(scenario)
         for effect in job.effects:
@@ -127,6 +128,31 @@ class Simulator:
             shorter = max(job.share * scenario.run.duration_s, 2.0 * _LONGEST_INTERVAL_S)
             scenario = replace(scenario, run=replace(scenario.run, duration_s=shorter))
         return scenario
+
+    def coarse(self, scenario: Scenario) -> Scenario:
+        """Return a scenario in the longest step, and where the lab leaves the scheme open in the formats' own.
+
+        Parameters
+        ----------
+        scenario
+            Any of this dataset's.
+        """
+        scheme = (
+            self.model.magnetic_torque if "magnetic_torque" in self.dataset.model_given else Model().magnetic_torque
+        )
+        return replace(
+            scenario,
+            run=replace(scenario.run, step_s=_first_step(scenario.field)),
+            model=replace(scenario.model, magnetic_torque=scheme),
+        )
+
+    def _finer(self, job: Job) -> int:
+        """Return by how much the trial's step is too long for a job's effects."""
+        longest = min((effect.longest_step_s for effect in job.effects if not effect.is_neutral()), default=inf)
+        finer = 1
+        while self.step_s[job.trial] / finer > longest:
+            finer *= 2
+        return finer
 
     def run(self, jobs: Sequence[Job]) -> list[Path | None]:
         """Return the path of each job as the camera sees it; None where the model cannot be run.

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from .attribute import Attribution, Contender
+from .attribute import Attribution
 from .comparison import Comparison
+from .contender import Contender
 from .predictive import is_right, mean_square
 from .result import Gap, Verdict
 
@@ -32,7 +33,7 @@ def judge(comparison: Comparison, attribution: Attribution, gap: Gap) -> tuple[V
         On trials that the best hypothesis had not seen.
     """
     nominal, best = attribution.nominal, attribution.contenders[0]
-    if is_right(comparison, nominal.residual) and (
+    if attribution.nominal_is_right and (
         not best.names
         or mean_square(comparison, nominal.residual) - mean_square(comparison, best.residual) < _LEAST_GAP
     ):

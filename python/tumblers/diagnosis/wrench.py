@@ -238,12 +238,21 @@ def _slopes(
     return slopes
 
 
-def _information(state: _State, slopes: Floats, nuisances: Floats) -> tuple[Floats, Floats]:
+def _present(comparison: Comparison, residual: Residual, trial: int) -> Floats:
+    """Return how far the nuisances are off already, in units of their priors, shape (m,).
+
+    What they took of the gap under the nominal model costs them, so that a wrench can take it back.
+    """
+    shared = np.concatenate([residual.camera, residual.tolerance]) / comparison.shared_sigmas
+    return np.concatenate([residual.local[trial] / comparison.local_sigmas[trial], shared])
+
+
+def _information(state: _State, slopes: Floats, nuisances: Floats, present: Floats) -> tuple[Floats, Floats]:
     """Return JᵀJ and Jᵀr by the wrench, the nuisances taken out and Huber's weights in them."""
     weight = np.sqrt(np.minimum(1.0, HUBER / np.maximum(np.abs(state.values), 1e-12)))[:, None]
     j, n, r = slopes * weight, nuisances * weight, state.values * weight[:, 0]
     inverse = np.linalg.inv(n.T @ n + np.eye(n.shape[1]))
-    return j.T @ j - j.T @ n @ inverse @ n.T @ j, j.T @ r - j.T @ n @ inverse @ (n.T @ r)
+    return j.T @ j - j.T @ n @ inverse @ n.T @ j, j.T @ r - j.T @ n @ inverse @ (n.T @ r + present)
 
 
 def _improved(
@@ -259,7 +268,8 @@ def _improved(
     tried: dict[int, list[tuple[float, Floats]]] = {}
     for i, state in states.items():
         here = (state.wrench / prior[i]).ravel()
-        a, g = _information(state, slopes[i], _nuisances(comparison, residual, i, state.path))
+        nuisances = _nuisances(comparison, residual, i, state.path)
+        a, g = _information(state, slopes[i], nuisances, _present(comparison, residual, i))
         step: Floats = -np.linalg.solve(a + np.eye(len(a)), g + here).astype(np.float64)
         tried[i] = [(share, share * step) for share in _SHARES]
         jobs += [Job(i, edit=_adds(edges[i], _moved(state, change, prior[i]))) for _, change in tried[i]]
@@ -291,12 +301,13 @@ def _moved(state: _State, change: Floats, prior: Floats) -> Floats:
 
 def _cost(comparison: Comparison, residual: Residual, trial: int, state: _State, prior: Floats) -> float:
     """Return the objective, the nuisances at their best."""
-    n = _nuisances(comparison, residual, trial, state.path)
+    n, present = _nuisances(comparison, residual, trial, state.path), _present(comparison, residual, trial)
     weight = np.sqrt(np.minimum(1.0, HUBER / np.maximum(np.abs(state.values), 1e-12)))[:, None]
     best = -np.linalg.solve(
-        (n * weight).T @ (n * weight) + np.eye(n.shape[1]), (n * weight).T @ (state.values * weight[:, 0])
+        (n * weight).T @ (n * weight) + np.eye(n.shape[1]), (n * weight).T @ (state.values * weight[:, 0]) + present
     )
-    return robust_cost(state.values + n @ best) + float(best @ best) + float(np.sum((state.wrench / prior) ** 2))
+    off = best + present
+    return robust_cost(state.values + n @ best) + float(off @ off) + float(np.sum((state.wrench / prior) ** 2))
 
 
 def _windows(
@@ -310,7 +321,8 @@ def _windows(
     slopes: Floats,
 ) -> Windows:
     assert nominal is not None
-    a, _ = _information(state, slopes, _nuisances(comparison, residual, trial, state.path))
+    nuisances = _nuisances(comparison, residual, trial, state.path)
+    a, _ = _information(state, slopes, nuisances, _present(comparison, residual, trial))
     # A wrench that leaves a gap, or does not do what its derivatives foretell, is known less well than by noise alone.
     spread = max(1.0, float(np.mean(np.minimum(state.values**2, HUBER**2)))) + state.error
     scale = np.tile(prior, len(edges) - 1)

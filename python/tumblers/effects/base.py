@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
+from math import inf
 from typing import TYPE_CHECKING, ClassVar, Self
 
 from ..check import number, sequence
@@ -34,6 +35,8 @@ class Effect(ABC):
         Its numbers.
     source
         Where its equation comes from.
+    longest_step_s
+        The longest step that resolves it, s; infinite where it makes nothing faster.
 
     Raises
     ------
@@ -44,6 +47,7 @@ class Effect(ABC):
     name: ClassVar[str]
     parameters: ClassVar[tuple[Parameter, ...]]
     source: ClassVar[str]
+    longest_step_s: ClassVar[float] = inf
 
     def __post_init__(self) -> None:
         for f in fields(self):
@@ -124,6 +128,39 @@ class Effect(ABC):
                     value = neutral[i] + share * (end - neutral[i])
                     points.append((*neutral[:i], value, *neutral[i + 1 :]))
         return tuple(points)
+
+    @classmethod
+    def to_fit(cls, values: Sequence[float]) -> tuple[float, ...]:
+        """Return the coordinates in which a fit moves: the parameters, unless these turn in a circle.
+
+        Parameters
+        ----------
+        values
+            Of the parameters, in their order.
+        """
+        return tuple(values)
+
+    @classmethod
+    def from_fit(cls, coordinates: Sequence[float]) -> tuple[float, ...]:
+        """Return the values of the parameters at a fit's coordinates.
+
+        Parameters
+        ----------
+        coordinates
+            As many as there are parameters.
+        """
+        return tuple(coordinates)
+
+    @classmethod
+    def fit_ranges(cls, scenario: Scenario) -> tuple[tuple[float, float], ...]:
+        """Return the range of each of a fit's coordinates.
+
+        Parameters
+        ----------
+        scenario
+            The nominal scenario.
+        """
+        return cls.ranges(scenario)
 
     @classmethod
     def from_vector(cls, values: Sequence[float]) -> Self:

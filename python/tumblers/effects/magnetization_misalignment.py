@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import cos, radians, sin
+from math import atan2, cos, degrees, hypot, radians, sin
 from typing import TYPE_CHECKING, ClassVar
 
 from .base import Effect
@@ -49,6 +50,7 @@ class MagnetizationMisalignment(Effect):
             high=180.0,
             unit="degrees",
             meaning="direction of the error about the long axis",
+            turns=True,
         ),
     )
     source: ClassVar[str] = "Xie, Bi, Cappelleri, Chakraborty: magnetization errors in manufacturing"
@@ -69,6 +71,42 @@ class MagnetizationMisalignment(Effect):
             The nominal scenario.
         """
         return ((8.0, 0.0), (8.0, 90.0), (8.0, 180.0), (8.0, -90.0), (15.0, 0.0), (15.0, 90.0))
+
+    @classmethod
+    def to_fit(cls, values: Sequence[float]) -> tuple[float, ...]:
+        """Return θ1 (cos θ2, sin θ2), degrees: what is smooth around neutral and has no end at ±180°.
+
+        Parameters
+        ----------
+        values
+            θ1 and θ2, degrees.
+        """
+        theta1, theta2 = values[0], radians(values[1])
+        return theta1 * cos(theta2), theta1 * sin(theta2)
+
+    @classmethod
+    def from_fit(cls, coordinates: Sequence[float]) -> tuple[float, ...]:
+        """Return θ1 and θ2, degrees.
+
+        Parameters
+        ----------
+        coordinates
+            θ1 (cos θ2, sin θ2), degrees.
+        """
+        up, side = coordinates
+        return hypot(up, side), degrees(atan2(side, up))
+
+    @classmethod
+    def fit_ranges(cls, scenario: Scenario) -> tuple[tuple[float, float], ...]:
+        """Return the range of either coordinate: θ1's, both ways.
+
+        Parameters
+        ----------
+        scenario
+            The nominal scenario.
+        """
+        _, most = cls.ranges(scenario)[0]
+        return ((-most, most), (-most, most))
 
     def act(self, scenario: Scenario) -> Scenario:
         """Return the scenario with its robot's magnetic axis turned.

@@ -25,6 +25,8 @@ class Parameter:
         What it is, in a few words.
     least, above
         Bounds beyond which a value is refused, where there are any.
+    turns
+        Whether it is an angle in degrees that comes back to itself after 360.
     """
 
     key: str
@@ -35,6 +37,7 @@ class Parameter:
     meaning: str
     least: float | None = None
     above: float | None = None
+    turns: bool = False
 
     @property
     def field(self) -> str:

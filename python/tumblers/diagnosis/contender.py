@@ -1,0 +1,74 @@
+"""`Contender`: a hypothesis at its best, with what speaks for it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..effects.base import Effect
+from .comparison import Residual
+from .fit import Fit, Fitter
+
+__all__ = ["Contender", "of_fit", "of_nominal"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Contender:
+    """A hypothesis with its evidence.
+
+    Attributes
+    ----------
+    names
+        Its effects; none for the nominal model.
+    fit
+        None for the nominal model.
+    residual
+        How wrong it is over all trials.
+    cost
+        The objective, against its own noise.
+    log_determinant
+        ln det of that noise's covariance over that of the nominal model's.
+    log_evidence
+        ln Z, the prior included.
+    probability
+        Over all contenders.
+    """
+
+    names: tuple[str, ...]
+    fit: Fit | None
+    residual: Residual
+    cost: float
+    log_determinant: float = 0.0
+    log_evidence: float = 0.0
+    probability: float = 0.0
+
+    @property
+    def point(self) -> Floats:
+        """The parameters u, shape (p,)."""
+        return np.empty(0) if self.fit is None else self.fit.point
+
+    @property
+    def total(self) -> float:
+        """-2 ln likelihood, but for what is the same for all: what contenders are compared by."""
+        return self.cost + self.log_determinant
+
+    @property
+    def effects(self) -> tuple[Effect, ...]:
+        """The effects at their best."""
+        return () if self.fit is None else self.fit.hypothesis.effects(self.fit.point)
+
+
+def of_fit(fitter: Fitter, fit: Fit) -> Contender:
+    """Return the contender of a fit against the noise of the moment."""
+    return Contender(fit.hypothesis.names, fit, fit.residual, fit.cost, fitter.comparison.log_determinant)
+
+
+def of_nominal(fitter: Fitter) -> Contender:
+    """Return the nominal model as a contender, against the noise of the moment."""
+    comparison = fitter.comparison
+    residual = comparison.residual(comparison.nominal_paths)
+    return Contender((), None, residual, fitter.cost(residual, np.zeros(1)), comparison.log_determinant)

@@ -1,0 +1,310 @@
+"""`Search`: the best point of every effect, and of the pairs that may be at work.
+
+Where an effect is weak, differences are linear in it and a few steps of least squares from a scan suffice. Where it is
+strong, the objective has many minima: thresholds, motions that soon have nothing in common. Then lines through the
+ranges are halved, and many points over the whole range are fitted to the beginnings of the trials first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from itertools import combinations, pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import qmc
+
+from ..effects.base import Effect
+from .contender import Contender, of_fit, of_nominal
+from .fit import Fit, Fitter
+from .hypothesis import Hypothesis
+from .predictive import is_right, mean_square
+
+__all__ = ["OnPhase", "Search"]
+
+Floats = NDArray[np.float64]
+OnPhase = Callable[[str, int, int], None]
+
+# Fits that take so much off the objective are worth another look.
+_CLEAR = 20.0
+# Trial points of a fit: of an effect that leads after the scan (so many do), of another, and where nothing is better
+# than neutral; of a pair, and where a good fit is taken further.
+_LEADING, _LEADING_POINTS, _POINTS, _IDLE_POINTS, _PAIR_POINTS, _POLISH_POINTS = 6, 6, 4, 2, 4, 8
+# Shares of the way from neutral to each end of a range that are tried where nothing explains the gap, how often the
+# stretches beside the best of them are halved, for effects with no more parameters than this, on so many trials that
+# are farthest off.
+_GRID, _HALVINGS, _FEW, _WORST = (0.1, 0.3, 0.5, 0.7, 0.9, 1.0), 8, 2, 3
+# How many fits are held against their own noise, how often it is measured after a further fit at most, and what that
+# must take off the objective for another round.
+_SETTLED, _ROUNDS, _ENOUGH = 4, 2, 5.0
+# Beginnings: where the mean square stays above this, so many hypotheses are fitted from so many points over their range
+# (of one parameter, of more), to these shares of the trials' time one after another, the best so many points followed.
+_WANTING, _REFINED, _ONE_PARAMETER_POINTS, _MORE_POINTS, _STAGES, _FOLLOWED = 0.85, 3, 8, 16, (0.25, 0.5), 2
+_STAGE_POINTS = 5
+# Of an effect with more parameters than this only where it leads.
+_MANY = 4
+# Effects to which a second is added, the farther ones only where the best leaves a gap and they no more than so much of
+# its objective; seconds that are fitted with each; singles that are joined two and two, and joints that are fitted.
+_LEFT, _FIRSTS, _NEAR_BEST, _SECONDS, _JOINED, _JOINTS = 0.95, 2, 1.5, 4, 6, 3
+# Pairs whose beginnings are searched.
+_PAIRS_REFINED = 3
+
+
+class Search:
+    """Searches the catalogue.
+
+    Parameters
+    ----------
+    fitter
+        Of the dataset.
+    kinds
+        The effects.
+    tell
+        Is told the phase, how much of it is done, and of how much.
+    seed
+        Of the points over the range.
+    """
+
+    def __init__(self, fitter: Fitter, kinds: Sequence[type[Effect]], tell: OnPhase, seed: int) -> None:
+        self.fitter, self.comparison, self.tell, self.seed = fitter, fitter.comparison, tell, seed
+        scenarios = [self.comparison.simulator.nominal(i) for i in fitter.trials]
+        possible = [Hypothesis.of(kind, scenarios) for kind in kinds]
+        self.possible = [hypothesis for hypothesis in possible if len(hypothesis.starts)]
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the effects that can be at work in these trials."""
+        return [hypothesis.names[0] for hypothesis in self.possible]
+
+    def contenders(self) -> list[Contender]:
+        """Return the nominal model and what was fitted, those that count against their own noise."""
+        nominal = of_nominal(self.fitter)
+        singles = self._singles(nominal)
+        if not singles or singles[0].total > nominal.total - _CLEAR:
+            return [nominal, *singles]
+        if self.comparison.halve_steps_for(singles[0].effects):
+            nominal, singles = of_nominal(self.fitter), self.judged_again(singles)
+        singles = self._settled(singles)
+        if self._is_wanting(singles[0]):
+            singles = self._settled(self._refined(singles, _REFINED))
+        return [nominal, *sorted([*singles, *self._pairs(singles)], key=_total)]
+
+    def judged_again(self, contenders: Sequence[Contender]) -> list[Contender]:
+        """Hold the same fits against another noise, the best first.
+
+        Parameters
+        ----------
+        contenders
+            Without the nominal model.
+        """
+        made = []
+        for contender in contenders:
+            assert contender.fit is not None
+            made.append(of_fit(self.fitter, self._at(contender.fit)))
+        return sorted(made, key=_total)
+
+    def _singles(self, nominal: Contender) -> list[Contender]:
+        self.tell("first look at every effect", 0, 1)
+        zeros = [np.zeros(len(h.neutral)) for h in self.possible]
+        scans = self.fitter.scan(self.possible, zeros, nominal.residual)
+        singles: list[Contender] = []
+        leading = sorted(points[0][0] for points in scans)[:_LEADING]
+        for k, (hypothesis, points) in enumerate(zip(self.possible, scans, strict=True)):
+            self.tell("fitting each effect", k, len(self.possible))
+            cost, start = points[0]
+            count = (_LEADING_POINTS if cost in leading else _POINTS) if np.any(start) else _IDLE_POINTS
+            singles.append(of_fit(self.fitter, self.fitter.fit(hypothesis, start, evaluations=count)))
+        if singles and not is_right(self.comparison, min([nominal, *singles], key=_total).residual):
+            singles = self._searched(nominal, singles)
+        return sorted(singles, key=_total)
+
+    def _is_wanting(self, contender: Contender) -> bool:
+        return mean_square(self.comparison, contender.residual) > _WANTING
+
+    def _searched(self, nominal: Contender, singles: Sequence[Contender]) -> list[Contender]:
+        """Fit effects of few parameters again from the best point on a line through their ranges.
+
+        A threshold shows only beyond it, and what lies just beyond is neither like the nominal motion nor like what
+        lies far beyond: the lines are halved on either side of their best points, for the trials that are most off.
+        """
+        fitter = self.fitter
+        excess = [fitter.trial_cost(nominal.residual, i) - self.comparison.sizes[i] for i in fitter.trials]
+        wrong = tuple(int(i) for i in np.argsort(excess)[-_WORST:] if excess[i] > 0.0)
+        made = list(singles)
+        for k, contender in enumerate(singles):
+            self.tell("lines through every range", k, len(singles))
+            assert contender.fit is not None
+            hypothesis, count = contender.fit.hypothesis, len(contender.point)
+            if count > _FEW or not wrong:
+                continue
+            still = fitter.cost(nominal.residual, np.zeros(count), wrong)
+            ends = [
+                end * np.eye(count)[j]
+                for j in range(count)
+                for end in (hypothesis.low[j], hypothesis.high[j])
+                if end != 0.0
+            ]
+            found = [self._along(hypothesis, end, still, wrong) for end in ends]
+            cost, point = min(found, key=lambda entry: entry[0], default=(np.inf, contender.point))
+            if cost < fitter.cost(contender.residual, contender.point, wrong) - _CLEAR:
+                other = of_fit(fitter, fitter.fit(hypothesis, point, evaluations=_LEADING_POINTS))
+                made[k] = min(contender, other, key=_total)
+        return made
+
+    def _along(
+        self, hypothesis: Hypothesis, end: Floats, still: float, trials: tuple[int, ...]
+    ) -> tuple[float, Floats]:
+        """Return the least objective over some trials between neutral and an end of the range, and its point."""
+        known = {0.0: still}
+        shares: Sequence[float] = _GRID
+        for _ in range(1 + _HALVINGS):
+            points = [share * end for share in shares]
+            residuals = self.fitter.residuals(hypothesis, points, trials)
+            for share, point, residual in zip(shares, points, residuals, strict=True):
+                known[share] = self.fitter.cost(residual, point, trials)
+            order, least = sorted(known), min(known.values())
+            # Of a plateau, its far end: beyond it something begins to move.
+            place = max(n for n, share in enumerate(order) if known[share] < least + _CLEAR)
+            near = order[max(place - 1, 0) : place + 2]
+            shares = [0.5 * (a + b) for a, b in pairwise(near) if abs(known[a] - known[b]) > _CLEAR]
+            if not shares:
+                break
+        best = min(known, key=lambda share: known[share])
+        return known[best], best * end
+
+    def _settled(self, contenders: Sequence[Contender]) -> list[Contender]:
+        """Hold the best so many against their own noise and fit them on; the best first."""
+        made = sorted(contenders, key=_total)
+        for k, contender in enumerate(made[:_SETTLED]):
+            self.tell("another look at the best", k, _SETTLED)
+            assert contender.fit is not None
+            best = self._against_itself(contender.fit)
+            for _ in range(_ROUNDS):
+                assert best.fit is not None
+                self.comparison.take_noise_of(best.effects)
+                fit = self.fitter.fit(best.fit.hypothesis, best.point, evaluations=_POLISH_POINTS)
+                other = self._against_itself(fit)
+                if other.total > best.total - _ENOUGH:
+                    break
+                best = other
+            made[k] = best
+        return sorted(made, key=_total)
+
+    def _against_itself(self, fit: Fit) -> Contender:
+        """Hold a fit against its own noise."""
+        self.comparison.take_noise_of(fit.hypothesis.effects(fit.point))
+        return of_fit(self.fitter, self._at(fit))
+
+    def _at(self, fit: Fit) -> Fit:
+        """Hold a fit against the noise of the moment."""
+        residual = self.fitter.residuals(fit.hypothesis, [fit.point])[0]
+        return replace(fit, residual=residual, cost=self.fitter.cost(residual, fit.point))
+
+    def _refined(self, contenders: Sequence[Contender], count: int) -> list[Contender]:
+        """Fit the best so many again from points over their whole range, the beginnings of the trials first.
+
+        Where an effect is strong, paths soon have nothing in common any more; their beginnings still have.
+        """
+        fitter = self.fitter
+        tracked = tuple(i for i in fitter.trials if len(self.comparison.readers[i].observed.time_s))
+        made = list(contenders)
+        for k, contender in enumerate(made[:count] if tracked else ()):
+            self.tell("points over the whole range", k, count)
+            assert contender.fit is not None
+            self.comparison.take_noise_of(contender.effects)
+            hypothesis = contender.fit.hypothesis
+            if k > 0 and len(contender.point) > _MANY:
+                continue
+            free = hypothesis.high > hypothesis.low
+            points = _ONE_PARAMETER_POINTS if free.sum() < 2 else _MORE_POINTS
+            shares = qmc.Sobol(len(free), rng=np.random.default_rng(self.seed)).random(points)
+            tried = [hypothesis.low + share * (hypothesis.high - hypothesis.low) for share in shares]
+            residuals = fitter.residuals(hypothesis, tried, tracked, _STAGES[0])
+            costs = [fitter.cost(residual, point, tracked) for residual, point in zip(residuals, tried, strict=True)]
+            begun = [
+                fitter.fit(hypothesis, tried[n], tracked, _STAGE_POINTS, _STAGES[0])
+                for n in np.argsort(costs, kind="stable")[:_FOLLOWED]
+            ]
+            point = min(begun, key=lambda fit: fit.cost).point
+            for stage in _STAGES[1:]:
+                point = fitter.fit(hypothesis, point, tracked, _STAGE_POINTS, stage).point
+            fit = fitter.fit(hypothesis, point, evaluations=_POLISH_POINTS)
+            made[k] = of_fit(fitter, min(self._at(contender.fit), fit, key=lambda fit: fit.cost))
+        return sorted(made, key=_total)
+
+    def _pairs(self, singles: Sequence[Contender]) -> list[Contender]:
+        """Add a second effect to the best; none where none shows."""
+        found: dict[frozenset[str], Contender] = {}
+        # A second effect shows beside the best one; beside the next best only where the best leaves a gap.
+        wanting = mean_square(self.comparison, singles[0].residual) > _LEFT
+        firsts = [c for c in singles[: _FIRSTS if wanting else 1] if c.total < _NEAR_BEST * singles[0].total]
+        for n, first in enumerate(firsts):
+            self.tell("fitting pairs", n, len(firsts))
+            self._added(first, found)
+        if wanting:
+            self._joined(singles, found)
+        pairs = sorted(found.values(), key=_total)
+        if not pairs or pairs[0].total > singles[0].total - _CLEAR:
+            return pairs
+        pairs = self._settled(pairs)
+        found = {frozenset(pair.names): pair for pair in pairs}
+        # The best second may be the answer to a first that is wrong: with it held, is there a better first?
+        best = pairs[0]
+        assert best.fit is not None
+        for n, kind in enumerate(best.fit.hypothesis.kinds):
+            self.tell("exchanging one of the pair", n, 2)
+            if kind.name not in firsts[0].names:
+                self._added(self._alone(best, kind), found)
+        again = self._refined(sorted(found.values(), key=_total), _PAIRS_REFINED)
+        return self._settled(again) if again[0].fit is not best.fit else again
+
+    def _alone(self, pair: Contender, kind: type[Effect]) -> Contender:
+        """Return one effect of a pair, as it is within it, as a contender of its own."""
+        assert pair.fit is not None
+        hypothesis = next(h for h in self.possible if h.kinds == (kind,))
+        mine = np.array([name == kind.name for name, _ in pair.fit.hypothesis.keys])
+        return self._against_itself(self.fitter.fit(hypothesis, pair.point[mine], evaluations=_IDLE_POINTS))
+
+    def _added(self, first: Contender, found: dict[frozenset[str], Contender]) -> None:
+        """Fit the seconds that promise most beside a first, against its noise."""
+        assert first.fit is not None
+        self.comparison.take_noise_of(first.effects)
+        others = [h for h in self.possible if h.names != first.names]
+        joined = [first.fit.hypothesis + other for other in others]
+        bases = [np.concatenate([first.point, np.zeros(len(other.neutral))]) for other in others]
+        scans = self.fitter.scan(joined, bases, first.residual, first.fit.jacobian)
+        costs = [points[0][0] for points in scans]
+        for k in np.argsort(costs, kind="stable")[:_SECONDS]:
+            if costs[k] < first.cost - _CLEAR:
+                self._keep(joined[k], scans[k][0][1], found)
+
+    def _joined(self, singles: Sequence[Contender], found: dict[frozenset[str], Contender]) -> None:
+        """Fit the best of the best singles two and two, from each one's own best and from halves."""
+        self.comparison.take_noise_of(singles[0].effects)
+        tried: list[tuple[float, int, Hypothesis, Floats]] = []
+        for first, second in combinations(singles[:_JOINED], 2):
+            assert first.fit is not None
+            assert second.fit is not None
+            both = first.fit.hypothesis + second.fit.hypothesis
+            points = [
+                np.concatenate([a * first.point, b * second.point]) for a, b in ((1.0, 1.0), (1.0, 0.5), (0.5, 1.0))
+            ]
+            for point, residual in zip(points, self.fitter.residuals(both, points), strict=True):
+                tried.append((self.fitter.cost(residual, point), len(tried), both, point))
+        tried.sort(key=lambda entry: entry[:2])
+        fitted: set[tuple[str, ...]] = set()
+        for _, _, both, point in tried:
+            if both.names not in fitted and len(fitted) < _JOINTS:
+                fitted.add(both.names)
+                self._keep(both, point, found)
+
+    def _keep(self, hypothesis: Hypothesis, start: Floats, found: dict[frozenset[str], Contender]) -> None:
+        contender = of_fit(self.fitter, self.fitter.fit(hypothesis, start, evaluations=_PAIR_POINTS))
+        names = frozenset(hypothesis.names)
+        if names not in found or contender.total < found[names].total:
+            found[names] = contender
+
+
+def _total(contender: Contender) -> float:
+    return contender.total

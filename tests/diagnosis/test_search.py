@@ -1,0 +1,113 @@
+"""What a search rests on: coordinates of a fit, the objective, steps that a hypothesis asks for, thresholds."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from tumblers.diagnosis.comparison import FAR, Comparison
+from tumblers.diagnosis.contender import of_nominal
+from tumblers.diagnosis.fit import Fitter, robust_cost
+from tumblers.diagnosis.hypothesis import Hypothesis
+from tumblers.diagnosis.search import Search
+from tumblers.diagnosis.simulator import STEPS_S, Job, Simulator
+from tumblers.effects.base import Effect
+from tumblers.effects.catalogue import CATALOGUE
+from tumblers.effects.contact_compliance import ContactCompliance
+from tumblers.effects.friction_coefficient import FrictionCoefficient
+from tumblers.effects.magnetization_misalignment import MagnetizationMisalignment
+from tumblers.field import StaticField
+
+from .lab import measure, plan
+
+# A robot that lies on a slope: it slides where friction is lower than a sixth below the nominal one.
+LYING = (("lying", StaticField(strength_T=0.0, direction=(0.0, 1.0, 0.0)), 50.0),)
+
+
+def quiet(_phase: str, _done: int, _total: int) -> None:
+    """Tell nobody."""
+
+
+@pytest.mark.parametrize("name", CATALOGUE)
+def test_the_coordinates_of_a_fit_are_the_parameters_again(name: str) -> None:
+    kind = CATALOGUE[name]
+    scenario = Simulator(plan()).nominal(0)
+    for start in kind.starts(scenario):
+        assert_allclose(kind.from_fit(kind.to_fit(start)), start, rtol=1e-12, atol=1e-12)
+
+
+def test_a_misalignment_is_smooth_around_neutral_and_has_no_end_at_half_a_turn() -> None:
+    hypothesis = Hypothesis.of(MagnetizationMisalignment, [Simulator(plan()).nominal(0)])
+    assert_allclose(hypothesis.values([0.0, 0.0])[0], 0.0)
+    before, after = hypothesis.values([-0.2, 1e-6]), hypothesis.values([-0.2, -1e-6])
+    assert_allclose(before[0], after[0], rtol=1e-6)
+    assert_allclose(before[1] - after[1], 360.0, rtol=1e-4)
+    axes = [effect.edit(Simulator(plan()).nominal(0)).robot.magnetic_axis for effect in _both(hypothesis)]
+    assert_allclose(axes[0], axes[1], atol=1e-6)
+
+
+def _both(hypothesis: Hypothesis) -> list[Effect]:
+    return [hypothesis.effects(point)[0] for point in ([-0.2, 1e-6], [-0.2, -1e-6])]
+
+
+def test_a_trial_that_no_model_can_follow_counts_by_its_logarithm() -> None:
+    comparison = Comparison(measure(plan(), seed=2), Simulator(measure(plan(), seed=2)))
+    fitter, residual = Fitter(comparison), comparison.residual(comparison.nominal_paths)
+    count = comparison.sizes[0] - len(comparison.floors[0].outcome_scale)
+    outcomes = robust_cost(residual.trials[0][count:])
+    for size, expected in ((1e-3, 1e-6 * count), (3.0, FAR * count * np.log1p(9.0 / FAR))):
+        residual.trials[0][:count] = size
+        assert fitter.trial_cost(residual, 0) - outcomes == pytest.approx(expected, rel=1e-5)
+    assert comparison.weight(0, residual.trials[0]) == pytest.approx(1.0 / (1.0 + 9.0 / FAR))
+
+
+def test_an_effect_that_makes_motion_fast_is_simulated_in_a_step_that_resolves_it() -> None:
+    simulator = Simulator(plan())
+    assert simulator.step_s[0] == STEPS_S[0]
+    soft = simulator.scenario(Job(0, (ContactCompliance(compliance_m_per_N=2.0),)))
+    assert soft.run.step_s <= ContactCompliance.longest_step_s * (1.0 + 1e-9)
+    # Neutral is the nominal model, bit for bit, so in its step too.
+    neutral = simulator.scenario(Job(0, (ContactCompliance(),)))
+    assert neutral == simulator.nominal(0)
+
+
+def test_steps_are_halved_where_a_hypothesis_asks_for_it() -> None:
+    dataset = measure(plan(LYING))
+    comparison = Comparison(dataset, Simulator(dataset))
+    assert comparison.simulator.step_s == [STEPS_S[0]], "a body that lies still is the same in any step"
+    before = comparison.nominal_paths[0]
+    assert comparison.halve_steps_for((FrictionCoefficient(factor=0.5),))
+    assert comparison.simulator.step_s[0] < STEPS_S[0], "a body that slides is not"
+    after = comparison.nominal_paths[0]
+    assert before is not None
+    assert after is not None
+    assert_allclose(before.position_m[-1], after.position_m[-1], atol=1e-9)
+
+
+def test_a_threshold_in_the_middle_of_a_range_is_found() -> None:
+    # Friction just low enough to slide: of no use is a derivative where nothing moves, nor a start far beyond.
+    truth = FrictionCoefficient(factor=_sliding_factor())
+    dataset = measure(plan(LYING), (truth,))
+    comparison = Comparison(dataset, Simulator(dataset))
+    fitter = Fitter(comparison)
+    search = Search(fitter, [FrictionCoefficient], quiet, 0)
+    nominal = of_nominal(fitter)
+    best = min(search.contenders(), key=lambda c: c.cost)
+    assert nominal.cost > 100.0
+    assert best.names == ("friction_coefficient",)
+    (found,) = best.effects
+    assert isinstance(found, FrictionCoefficient)
+    assert found.factor == pytest.approx(truth.factor, rel=0.01)
+
+
+def _sliding_factor() -> float:
+    """Return a factor of friction with which the body slides by about half its length."""
+    simulator = Simulator(plan(LYING))
+    low, high = 0.3, 1.0
+    for _ in range(20):
+        middle = 0.5 * (low + high)
+        path = simulator.run([Job(0, (FrictionCoefficient(factor=middle),))])[0]
+        assert path is not None
+        low, high = (middle, high) if path.position_m[-1, 1] < -4e-4 else (low, middle)
+    return low
