@@ -112,6 +112,7 @@ def draw_dataset(seed: int, index: int) -> tuple[Dataset, Answer]:
     other = [bool(rng.random() < _OTHER_FORM) for _ in about.names]
     names = about.names
     found: list[tuple[_World, list[_Sized]]] = []
+    fleeting: list[tuple[_World, list[_Sized]]] = []
     for number in range(_LABS):
         world = _draw_world(rng)
         if world is None:
@@ -120,7 +121,10 @@ def draw_dataset(seed: int, index: int) -> tuple[Dataset, Answer]:
             first, second = rng.choice(len(CATALOGUE), size=2, replace=False).tolist()
             names = (tuple(CATALOGUE)[first], tuple(CATALOGUE)[second])
         sized = _sizes(world, about.kind, names, other, target, rng)
-        if sized is None or not world.repeats([s.law for s in sized]):
+        if sized is None:
+            continue
+        if not world.repeats([s.law for s in sized]):
+            fleeting.append((world, sized))
             continue
         found.append((world, sized))
         least = min(_SEEN, target) * (1.0 - _CLOSE) if about.kind == "one" else _CLEAR
@@ -130,11 +134,15 @@ def draw_dataset(seed: int, index: int) -> tuple[Dataset, Answer]:
                 return measured
             found.pop()
     # None is as strong as it should be: the strongest has to do.
-    for world, sized in sorted(found, key=lambda pair: -min((s.sigma for s in pair[1]), default=inf)):
+    for world, sized in [*sorted(found, key=_weakest, reverse=True), *sorted(fleeting, key=_weakest, reverse=True)]:
         measured = _measured(about.kind, world, sized, rng, index)
         if measured is not None:
             return measured
     raise SimulationError(f"no world for {' and '.join(about.names) or 'no effect'} was found in {_LABS} labs")
+
+
+def _weakest(pair: tuple[_World, list[_Sized]]) -> float:
+    return min((s.sigma for s in pair[1]), default=inf)
 
 
 def _draw_world(rng: np.random.Generator) -> _World | None:

@@ -34,9 +34,9 @@ def page_of(scores: Scores) -> str:
         f"world's own step alone would move its numbers by more than {QUIET_SIGMA:g} sigma, or one trial's by more "
         f"than {QUIET_TRIAL_SIGMA:g}, so that the most sensitive motions near step-out and the friction angle are "
         "missing; causes whose motion depends on the world's own step by more than "
-        f"{100.0 * REPEATS:.0f} % of what they change are drawn again in another lab, for a lab shows what it sees "
-        "again; a pair of effects that does not show in three labs is drawn again. An effect counts as named first "
-        "where it leads the effects of the diagnosis, whatever the verdict.",
+        f"{100.0 * REPEATS:.0f} % of what they change are drawn again in another lab, up to a dozen times, for a lab "
+        "shows what it sees again; a pair of effects that does not show in three labs is drawn again. An effect counts "
+        "as named first where it leads the effects of the diagnosis, whatever the verdict.",
         "## What has to hold",
         _table(("", "found", "wanted", "of", "met"), [_criterion_row(c) for c in scores.criteria]),
         "## What was named first",

@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,6 +38,8 @@ _WEIGHINGS, _REWEIGHED = 2, 1.3
 HUBER = 4.0
 # A derivative's step changes the differences by about this much (root mean square), within these bounds.
 _CHANGE, _LEAST_STEP, _MOST_STEP = 0.3, 1e-3, 5e-2
+# Derivatives of a step that is off by more than this factor are taken again.
+_RESTEPPED = 3.0
 # A guess that is nearer to a start than this, as a share of the way, is no other start.
 _NEAR = 0.15
 # A guess is simulated where it promises so much of the cost; the first effects' parameters move no farther than this.
@@ -72,6 +75,15 @@ class Fit:
     residual: Residual
     cost: float
     jacobian: Floats
+
+
+class _Moved(NamedTuple):
+    """Points beside one, and how wrong the hypothesis is there."""
+
+    steps: Floats
+    signed: Floats
+    points: list[Floats]
+    residuals: list[Residual]
 
 
 class Fitter:
@@ -227,6 +239,7 @@ class Fitter:
         chosen = self.trials if train is None else tuple(train)
         steps = np.full(len(start), 1e-2)
         known: dict[bytes, Residual] = {}
+        moved: dict[bytes, _Moved] = {}
 
         def at(point: Floats) -> Residual:
             key = point.tobytes()
@@ -246,11 +259,16 @@ class Fitter:
 
         def jacobian(point: Floats) -> Floats:
             here = rows(at(point), point)
-            # Towards the inside of the range.
-            signed = np.where(point + steps > hypothesis.high, -steps, steps)
-            moved = [point + signed[j] * np.eye(len(point))[j] for j in range(len(point))]
-            there = self.residuals(hypothesis, moved, chosen, share)
-            columns = [(rows(r, p) - here) / h for r, p, h in zip(there, moved, signed, strict=True)]
+            key = point.tobytes()
+            # The same point is asked for again with other weights, and at the end.
+            if key not in moved or np.any(np.abs(np.log(steps / moved[key].steps)) > np.log(_RESTEPPED)):
+                # Towards the inside of the range.
+                signed = np.where(point + steps > hypothesis.high, -steps, steps)
+                points = [point + signed[j] * np.eye(len(point))[j] for j in range(len(point))]
+                found = self.residuals(hypothesis, points, chosen, share)
+                moved[key] = _Moved(steps.copy(), signed, points, found)
+            by = moved[key]
+            columns = [(rows(r, p) - here) / h for r, p, h in zip(by.residuals, by.points, by.signed, strict=True)]
             slope = np.array([np.sqrt(np.mean(column[: -len(point)] ** 2)) for column in columns])
             steps[:] = np.clip(_CHANGE / np.maximum(slope, 1e-12), _LEAST_STEP, _MOST_STEP)
             return np.column_stack(columns)

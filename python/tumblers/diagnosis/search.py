@@ -32,12 +32,12 @@ _CLEAR = 20.0
 # than neutral; of a pair, and where a good fit is taken further.
 _LEADING, _LEADING_POINTS, _POINTS, _IDLE_POINTS, _PAIR_POINTS, _POLISH_POINTS = 6, 6, 4, 2, 4, 8
 # Shares of the way from neutral to each end of a range that are tried where nothing explains the gap, how often the
-# stretches beside the best of them are halved, for effects with no more parameters than this, on so many trials that
-# are farthest off.
-_GRID, _HALVINGS, _FEW, _WORST = (0.1, 0.3, 0.5, 0.7, 0.9, 1.0), 8, 2, 3
+# stretches beside the best of them are halved (where nothing moves at first, where it moves at once), for effects with
+# no more parameters than this, on so many trials that are farthest off.
+_GRID, _HALVINGS, _EARLY_HALVINGS, _FEW, _WORST = (0.2, 0.5, 0.8, 1.0), 10, 4, 2, 3
 # How many fits are held against their own noise, how often it is measured after a further fit at most, and what that
 # must take off the objective for another round.
-_SETTLED, _ROUNDS, _ENOUGH = 4, 2, 5.0
+_SETTLED, _ROUNDS, _ENOUGH = 3, 2, 5.0
 # Beginnings: where the mean square stays above this, so many hypotheses are fitted from so many points over their range
 # (of one parameter, of more), to these shares of the trials' time one after another, the best so many points followed.
 _WANTING, _REFINED, _ONE_PARAMETER_POINTS, _MORE_POINTS, _STAGES, _FOLLOWED = 0.85, 3, 8, 16, (0.25, 0.5), 2
@@ -48,7 +48,7 @@ _MANY = 4
 # its objective; seconds that are fitted with each; singles that are joined two and two, and joints that are fitted.
 _LEFT, _FIRSTS, _NEAR_BEST, _SECONDS, _JOINED, _JOINTS = 0.95, 2, 1.5, 4, 6, 3
 # Pairs whose beginnings are searched.
-_PAIRS_REFINED = 3
+_PAIRS_REFINED = 2
 
 
 class Search:
@@ -158,7 +158,8 @@ class Search:
         """Return the least objective over some trials between neutral and an end of the range, and its point."""
         known = {0.0: still}
         shares: Sequence[float] = _GRID
-        for _ in range(1 + _HALVINGS):
+        halvings = _HALVINGS
+        while halvings >= 0:
             points = [share * end for share in shares]
             residuals = self.fitter.residuals(hypothesis, points, trials)
             for share, point, residual in zip(shares, points, residuals, strict=True):
@@ -168,8 +169,10 @@ class Search:
             place = max(n for n, share in enumerate(order) if known[share] < least + _CLEAR)
             near = order[max(place - 1, 0) : place + 2]
             shares = [0.5 * (a + b) for a, b in pairwise(near) if abs(known[a] - known[b]) > _CLEAR]
-            if not shares:
-                break
+            if len(known) == 1 + len(_GRID) and abs(known[_GRID[0]] - still) > _CLEAR:
+                # No plateau: what is better than neutral is for least squares to find, what is not may begin early.
+                halvings = 0 if least < still - _CLEAR else _EARLY_HALVINGS
+            halvings = halvings - 1 if shares else -1
         best = min(known, key=lambda share: known[share])
         return known[best], best * end
 
@@ -182,13 +185,16 @@ class Search:
             best = self._against_itself(contender.fit)
             for _ in range(_ROUNDS):
                 assert best.fit is not None
-                self.comparison.take_noise_of(best.effects)
                 fit = self.fitter.fit(best.fit.hypothesis, best.point, evaluations=_POLISH_POINTS)
-                other = self._against_itself(fit)
-                if other.total > best.total - _ENOUGH:
+                other = self._against_itself(fit) if fit.cost < best.cost - _ENOUGH else best
+                if other.total >= best.total:
                     break
                 best = other
-            made[k] = best
+            assert best.fit is not None
+            # The derivatives where it is, against its own noise.
+            self.comparison.take_noise_of(best.effects)
+            here = self.fitter.fit(best.fit.hypothesis, best.point, evaluations=1)
+            made[k] = of_fit(self.fitter, here)
         return sorted(made, key=_total)
 
     def _against_itself(self, fit: Fit) -> Contender:
@@ -241,7 +247,7 @@ class Search:
         firsts = [c for c in singles[: _FIRSTS if wanting else 1] if c.total < _NEAR_BEST * singles[0].total]
         for n, first in enumerate(firsts):
             self.tell("fitting pairs", n, len(firsts))
-            self._added(first, found)
+            self._added(first, singles, found)
         if wanting:
             self._joined(singles, found)
         pairs = sorted(found.values(), key=_total)
@@ -255,7 +261,7 @@ class Search:
         for n, kind in enumerate(best.fit.hypothesis.kinds):
             self.tell("exchanging one of the pair", n, 2)
             if kind.name not in firsts[0].names:
-                self._added(self._alone(best, kind), found)
+                self._added(self._alone(best, kind), singles, found)
         again = self._refined(sorted(found.values(), key=_total), _PAIRS_REFINED)
         return self._settled(again) if again[0].fit is not best.fit else again
 
@@ -266,11 +272,15 @@ class Search:
         mine = np.array([name == kind.name for name, _ in pair.fit.hypothesis.keys])
         return self._against_itself(self.fitter.fit(hypothesis, pair.point[mine], evaluations=_IDLE_POINTS))
 
-    def _added(self, first: Contender, found: dict[frozenset[str], Contender]) -> None:
+    def _added(self, first: Contender, singles: Sequence[Contender], found: dict[frozenset[str], Contender]) -> None:
         """Fit the seconds that promise most beside a first, against its noise."""
         assert first.fit is not None
         self.comparison.take_noise_of(first.effects)
-        others = [h for h in self.possible if h.names != first.names]
+        # What each is by itself is one more start.
+        alone = {single.names: single.point for single in singles}
+        others = [
+            replace(h, starts=np.vstack([h.starts, alone[h.names]])) for h in self.possible if h.names != first.names
+        ]
         joined = [first.fit.hypothesis + other for other in others]
         bases = [np.concatenate([first.point, np.zeros(len(other.neutral))]) for other in others]
         scans = self.fitter.scan(joined, bases, first.residual, first.fit.jacobian)

@@ -7,15 +7,15 @@ import numpy as np
 from .attribute import Attribution
 from .comparison import Comparison
 from .contender import Contender
-from .predictive import is_right, mean_square
+from .predictive import is_right
 from .result import Gap, Verdict
 
 __all__ = ["judge", "ties"]
 
 # A right model's mean square on trials that no fit has seen, and how much worse than nominal it may be there.
 _FORETOLD, _NO_WORSE = 1.5, 1.02
-# A gap is called one where the best effects take away more than this share of the noise's variance.
-_LEAST_GAP = 0.01
+# Where noise may explain it all, an effect is named only where that is less probable than this.
+_LEAST_DOUBT = 0.05
 # Evidence that is less than this factor apart (ln 20), or predictions that differ by less than this in noise sigmas.
 _TIED, _SAME = 3.0, 0.25
 
@@ -33,10 +33,7 @@ def judge(comparison: Comparison, attribution: Attribution, gap: Gap) -> tuple[V
         On trials that the best hypothesis had not seen.
     """
     nominal, best = attribution.nominal, attribution.contenders[0]
-    if attribution.nominal_is_right and (
-        not best.names
-        or mean_square(comparison, nominal.residual) - mean_square(comparison, best.residual) < _LEAST_GAP
-    ):
+    if attribution.nominal_is_right and (not best.names or nominal.probability > _LEAST_DOUBT):
         return "no_gap", nominal
     if not best.names:
         return "unexplained", best
