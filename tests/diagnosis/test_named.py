@@ -47,7 +47,8 @@ def check_named(diagnosis: Diagnosis, truth: Effect) -> None:
     assert diagnosis.verdict == "explained"
     first = diagnosis.effects[0]
     assert first.name == truth.name
-    assert first.probability > 0.9
+    # A share of 12 % belongs to all hypotheses, however strong the evidence is.
+    assert first.probability > 0.85
     for parameter, value in zip(truth.parameters, truth.vector(), strict=True):
         interval = first.parameters[parameter.key]
         assert interval.low <= value <= interval.high, f"{parameter.key}: {value} is not in {interval}"

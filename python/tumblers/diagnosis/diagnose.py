@@ -39,7 +39,8 @@ Floats = NDArray[np.float64]
 _MEASURED, _PROBABLE = 3, 0.02
 # Rivals that a next trial is sought for, and draws of each.
 _RIVALS, _SAMPLES = 6, 4
-_RULED_OUT = 0.01
+# ln of the odds against an effect that is ruled out.
+_RULED_OUT = 4.6
 
 
 def diagnose(
@@ -204,7 +205,8 @@ class _Conclusion:
         out = {}
         named = {*chosen.names, *(other for others in tied.values() for other in others)}
         for contender in self.attribution.contenders:
-            if len(contender.names) != 1 or contender.names[0] in named or contender.probability > _RULED_OUT:
+            odds = chosen.log_evidence - contender.log_evidence
+            if len(contender.names) != 1 or contender.names[0] in named or odds < _RULED_OUT:
                 continue
             against = [
                 robust_cost(theirs) - robust_cost(ours)

@@ -30,25 +30,25 @@ OnPhase = Callable[[str, int, int], None]
 _CLEAR = 20.0
 # Trial points of a fit: of an effect that leads after the scan (so many do), of another, and where nothing is better
 # than neutral; of a pair, and where a good fit is taken further.
-_LEADING, _LEADING_POINTS, _POINTS, _IDLE_POINTS, _PAIR_POINTS, _POLISH_POINTS = 6, 6, 4, 2, 4, 8
+_LEADING, _LEADING_POINTS, _POINTS, _IDLE_POINTS, _PAIR_POINTS, _POLISH_POINTS = 6, 6, 4, 2, 4, 6
 # Shares of the way from neutral to each end of a range that are tried where nothing explains the gap, how often the
 # stretches beside the best of them are halved (where nothing moves at first, where it moves at once), for effects with
-# no more parameters than this, on so many trials that are farthest off.
-_GRID, _HALVINGS, _EARLY_HALVINGS, _FEW, _WORST = (0.2, 0.5, 0.8, 1.0), 10, 4, 2, 3
+# no more parameters than this, for each of so many trials that are farthest off; the best points that are kept.
+_GRID, _HALVINGS, _EARLY_HALVINGS, _FEW, _WORST, _HINTS = (0.2, 0.5, 0.8, 1.0), 10, 3, 2, 3, 2
 # How many fits are held against their own noise, how often it is measured after a further fit at most, and what that
 # must take off the objective for another round.
-_SETTLED, _ROUNDS, _ENOUGH = 3, 2, 5.0
+_SETTLED, _ROUNDS, _ENOUGH = 2, 2, 5.0
 # Beginnings: where the mean square stays above this, so many hypotheses are fitted from so many points over their range
 # (of one parameter, of more), to these shares of the trials' time one after another, the best so many points followed.
-_WANTING, _REFINED, _ONE_PARAMETER_POINTS, _MORE_POINTS, _STAGES, _FOLLOWED = 0.85, 3, 8, 16, (0.25, 0.5), 2
-_STAGE_POINTS = 5
+_WANTING, _REFINED, _ONE_PARAMETER_POINTS, _MORE_POINTS, _STAGES, _FOLLOWED = 0.85, 2, 8, 16, (0.25, 0.5), 1
+_STAGE_POINTS = 4
 # Of an effect with more parameters than this only where it leads.
 _MANY = 4
 # Effects to which a second is added, the farther ones only where the best leaves a gap and they no more than so much of
 # its objective; seconds that are fitted with each; singles that are joined two and two, and joints that are fitted.
-_LEFT, _FIRSTS, _NEAR_BEST, _SECONDS, _JOINED, _JOINTS = 0.95, 2, 1.5, 4, 6, 3
-# Pairs whose beginnings are searched.
-_PAIRS_REFINED = 2
+_LEFT, _FIRSTS, _NEAR_BEST, _SECONDS, _JOINED, _JOINTS = 0.95, 2, 1.5, 3, 4, 2
+# Pairs whose beginnings are searched, and singles for which one of the best pair is exchanged.
+_PAIRS_REFINED, _EXCHANGED = 2, 6
 
 
 class Search:
@@ -71,6 +71,8 @@ class Search:
         scenarios = [self.comparison.simulator.nominal(i) for i in fitter.trials]
         possible = [Hypothesis.of(kind, scenarios) for kind in kinds]
         self.possible = [hypothesis for hypothesis in possible if len(hypothesis.starts)]
+        # Points at which a threshold makes one trial right.
+        self.hints: dict[tuple[str, ...], list[Floats]] = {}
 
     @property
     def names(self) -> list[str]:
@@ -129,41 +131,44 @@ class Search:
         lies far beyond: the lines are halved on either side of their best points, for the trials that are most off.
         """
         fitter = self.fitter
-        excess = [fitter.trial_cost(nominal.residual, i) - self.comparison.sizes[i] for i in fitter.trials]
-        wrong = tuple(int(i) for i in np.argsort(excess)[-_WORST:] if excess[i] > 0.0)
+        # By number: a robot that soon leaves the view says little, but may be farther off than any.
+        off = [fitter.trial_cost(nominal.residual, i) / max(self.comparison.sizes[i], 1) for i in fitter.trials]
+        wrong = tuple(int(i) for i in np.argsort(off, kind="stable")[-_WORST:] if off[i] > 1.0)
         made = list(singles)
         for k, contender in enumerate(singles):
             self.tell("lines through every range", k, len(singles))
             assert contender.fit is not None
             hypothesis, count = contender.fit.hypothesis, len(contender.point)
-            if count > _FEW or not wrong:
+            if count > _FEW:
                 continue
-            still = fitter.cost(nominal.residual, np.zeros(count), wrong)
             ends = [
-                end * np.eye(count)[j]
-                for j in range(count)
-                for end in (hypothesis.low[j], hypothesis.high[j])
-                if end != 0.0
+                end * unit
+                for ends in (hypothesis.low, hypothesis.high)
+                for end, unit in zip(ends, np.eye(count), strict=True)
             ]
-            found = [self._along(hypothesis, end, still, wrong) for end in ends]
-            cost, point = min(found, key=lambda entry: entry[0], default=(np.inf, contender.point))
-            if cost < fitter.cost(contender.residual, contender.point, wrong) - _CLEAR:
-                other = of_fit(fitter, fitter.fit(hypothesis, point, evaluations=_LEADING_POINTS))
-                made[k] = min(contender, other, key=_total)
+            found: list[tuple[float, Floats]] = []
+            for i in wrong:
+                still = fitter.cost(nominal.residual, np.zeros(count), (i,))
+                lines = [self._along(hypothesis, end, still, i) for end in ends if np.any(end)]
+                found += [(cost - still, point) for cost, point in lines if cost < still - _CLEAR]
+            points = [point for _, point in sorted(found, key=lambda entry: entry[0])[:_HINTS]]
+            self.hints[contender.names] = points
+            for point, residual in zip(points, fitter.residuals(hypothesis, points), strict=True):
+                if fitter.cost(residual, point) < made[k].cost - _CLEAR:
+                    other = of_fit(fitter, fitter.fit(hypothesis, point, evaluations=_LEADING_POINTS))
+                    made[k] = min(made[k], other, key=_total)
         return made
 
-    def _along(
-        self, hypothesis: Hypothesis, end: Floats, still: float, trials: tuple[int, ...]
-    ) -> tuple[float, Floats]:
-        """Return the least objective over some trials between neutral and an end of the range, and its point."""
+    def _along(self, hypothesis: Hypothesis, end: Floats, still: float, trial: int) -> tuple[float, Floats]:
+        """Return the least objective of a trial between neutral and an end of the range, and its point."""
         known = {0.0: still}
         shares: Sequence[float] = _GRID
         halvings = _HALVINGS
         while halvings >= 0:
             points = [share * end for share in shares]
-            residuals = self.fitter.residuals(hypothesis, points, trials)
+            residuals = self.fitter.residuals(hypothesis, points, (trial,))
             for share, point, residual in zip(shares, points, residuals, strict=True):
-                known[share] = self.fitter.cost(residual, point, trials)
+                known[share] = self.fitter.cost(residual, point, (trial,))
             order, least = sorted(known), min(known.values())
             # Of a plateau, its far end: beyond it something begins to move.
             place = max(n for n, share in enumerate(order) if known[share] < least + _CLEAR)
@@ -261,7 +266,7 @@ class Search:
         for n, kind in enumerate(best.fit.hypothesis.kinds):
             self.tell("exchanging one of the pair", n, 2)
             if kind.name not in firsts[0].names:
-                self._added(self._alone(best, kind), singles, found)
+                self._added(self._alone(best, kind), singles[:_EXCHANGED], found)
         again = self._refined(sorted(found.values(), key=_total), _PAIRS_REFINED)
         return self._settled(again) if again[0].fit is not best.fit else again
 
@@ -279,7 +284,9 @@ class Search:
         # What each is by itself is one more start.
         alone = {single.names: single.point for single in singles}
         others = [
-            replace(h, starts=np.vstack([h.starts, alone[h.names]])) for h in self.possible if h.names != first.names
+            replace(h, starts=np.vstack([h.starts, alone[h.names], *self.hints.get(h.names, ())]))
+            for h in self.possible
+            if h.names != first.names and h.names in alone
         ]
         joined = [first.fit.hypothesis + other for other in others]
         bases = [np.concatenate([first.point, np.zeros(len(other.neutral))]) for other in others]
