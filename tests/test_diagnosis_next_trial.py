@@ -32,7 +32,11 @@ TIED: Hypotheses = [samples("line_contact_adhesion", 2e-6, 9e-6), samples("frict
 def test_the_papers_tie_is_broken(dataset: Dataset) -> None:
     proposed = next_trials(dataset, Simulator(dataset, 2), TIED, seed=1)
     assert proposed[0].information_bits > 0.3
-    assert [p.information_bits for p in proposed] == sorted((p.information_bits for p in proposed), reverse=True)
+    # The first is within what the lab has done, though others tell more.
+    slopes = [trial.incline_deg for trial in dataset.trials]
+    first = proposed[0].trial
+    assert min(slopes) <= first["incline_deg"] <= max(slopes)
+    assert (first["field"]["frequency_Hz"], first["field"]["strength_T"]) == (1.0, 0.02)
     assert all(set(p.predictions) == {"line_contact_adhesion", "friction_coefficient"} for p in proposed)
     assert all("separates line_contact_adhesion from friction_coefficient" in p.why for p in proposed)
     for p in proposed:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields, replace
 from itertools import pairwise
 from typing import Any
@@ -42,12 +42,15 @@ class Candidate:
         Time, s.
     faster
         Whether the field rotates faster than in any trial so far.
+    outside
+        Whether it leaves the ranges of the trials so far: faster, in a weaker field, or on a steeper slope.
     """
 
     field: RotatingField | StaticField
     incline_deg: float
     duration_s: float
     faster: bool = False
+    outside: bool = False
 
     @property
     def kind(self) -> str:
@@ -57,7 +60,7 @@ class Candidate:
         place = "slope" if self.incline_deg != 0.0 else f"run {self.field.rotation_axis}"
         return f"fast {place}" if self.faster else place
 
-    def steeper_and_flatter(self, others: Iterable[Candidate]) -> tuple[Candidate, ...]:
+    def steeper_and_flatter(self, others: Sequence[Candidate]) -> tuple[Candidate, ...]:
         """Return this trial on slopes between its own and the next ones, to half a degree.
 
         Parameters
@@ -70,7 +73,8 @@ class Candidate:
         high = min((s for s in slopes if s > self.incline_deg), default=self.incline_deg)
         between = [end + share * (self.incline_deg - end) for end in (low, high) for share in (0.25, 0.5, 0.75)]
         found = sorted({round(2.0 * slope) / 2.0 for slope in between} - slopes)
-        return tuple(replace(self, incline_deg=slope) for slope in found)
+        steepest = max((other.incline_deg for other in others if not other.outside), default=self.incline_deg)
+        return tuple(replace(self, incline_deg=slope, outside=self.outside or slope > steepest) for slope in found)
 
     def edit(self, scenario: Scenario) -> Scenario:
         """Return a scenario under these conditions, its step no longer than the field allows.
@@ -133,6 +137,7 @@ def candidates(dataset: Dataset, most: int) -> tuple[Candidate, ...]:
         axes = {(f.rotation_axis, f.initial_direction): f for f in rotating}
         fastest = max(f.frequency_Hz for f in rotating)
         inclines = _inclines(t.incline_deg for t in dataset.trials)
+        steepest = max(t.incline_deg for t in dataset.trials)
         used = sorted({f.strength_T for f in rotating})
         # Coils that give one strength also give half of it.
         strengths = _some(used if len(used) > 1 else [_rounded(0.5 * used[0]), *used], _MOST_STRENGTHS)
@@ -142,8 +147,16 @@ def candidates(dataset: Dataset, most: int) -> tuple[Candidate, ...]:
                     field = replace(axis, frequency_Hz=frequency, strength_T=strength)
                     time = round(min(longest, max(_LEAST_S, _CYCLES / frequency)), 3)
                     faster = frequency > fastest
+                    beyond = faster or strength < used[0]
                     runs += [
-                        Candidate(field=field, incline_deg=slope, duration_s=time, faster=faster) for slope in inclines
+                        Candidate(
+                            field=field,
+                            incline_deg=slope,
+                            duration_s=time,
+                            faster=faster,
+                            outside=beyond or slope > steepest,
+                        )
+                        for slope in inclines
                     ]
     still = round(min(longest, _LEAST_S), 3)
     for direction in dict.fromkeys(f.direction for f in static) or {(0.0, 0.0, 1.0): None}:

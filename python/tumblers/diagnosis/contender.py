@@ -32,6 +32,8 @@ class Contender:
         The objective, against its own noise.
     log_determinant
         ln det of that noise's covariance over that of the nominal model's.
+    settled
+        Whether that is the noise around itself, not around another.
     log_evidence
         ln Z, the prior included.
     probability
@@ -43,6 +45,7 @@ class Contender:
     residual: Residual
     cost: float
     log_determinant: float = 0.0
+    settled: bool = False
     log_evidence: float = 0.0
     probability: float = 0.0
 

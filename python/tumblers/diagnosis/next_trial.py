@@ -83,7 +83,9 @@ def next_trials(
     seed: int,
     probabilities: Sequence[float] | None = None,
 ) -> tuple[NextTrial, ...]:
-    """Return up to three trials that would tell hypotheses apart, different in kind, the best first.
+    """Return up to three trials that would tell hypotheses apart, of different kinds, the best first.
+
+    What is within the lab's ranges comes before what is not, if it tells anything.
 
     Parameters
     ----------
@@ -123,7 +125,8 @@ def next_trials(
             if foretold is not None:
                 rng = np.random.default_rng([seed, len(out)])
                 out.append((_information(foretold, weights, rng), option, foretold))
-        return sorted(out, key=lambda entry: -entry[0])
+        # What is within the lab's ranges comes first, if it tells anything.
+        return sorted(out, key=lambda entry: (entry[1].outside or entry[0] < _LEAST_BITS, -entry[0]))
 
     count = max(_LEAST_CANDIDATES, _MOST_ROLLOUTS // (_FEW * len(hypotheses)))
     options = candidates(dataset, min(_MOST_CANDIDATES, count))
@@ -140,9 +143,9 @@ def next_trials(
     kinds: set[str] = set()
     names = [names for names, _ in hypotheses]
     for bits, option, foretold in found:
-        if bits < _LEAST_BITS or len(chosen) == _PROPOSED:
+        if len(chosen) == _PROPOSED:
             break
-        if option.kind not in kinds:
+        if bits >= _LEAST_BITS and option.kind not in kinds:
             kinds.add(option.kind)
             chosen.append(_proposal(option, foretold, bits, names, np.random.default_rng([seed, len(options)])))
     return tuple(chosen)
@@ -244,9 +247,10 @@ def _proposal(
     # In words: the first hypothesis against the one that is farthest from it.
     apart = [_information(_pair(foretold, 0, b), np.array([0.5, 0.5]), rng) for b in range(1, len(labels))]
     a, b = 0, 1 + int(np.argmax(apart))
+    told = [labels[1 + int(k)] for k in np.argsort(apart, kind="stable")[::-1] if apart[k] >= _LEAST_BITS]
     why = (
-        f"separates {labels[a]} from {labels[b]}: {option.words()}, {labels[a]} {_says(foretold, a)}, "
-        f"{labels[b]} {_says(foretold, b)}"
+        f"separates {labels[a]} from {' and '.join(told or [labels[b]])}: {option.words()}, "
+        f"{labels[a]} {_says(foretold, a)}, {labels[b]} {_says(foretold, b)}"
     )
     predictions: dict[str, dict[str, tuple[float, float]]] = {}
     for place, label in enumerate(labels):
@@ -280,7 +284,7 @@ def _says(foretold: _Foretold, place: int) -> str:
         if not len(back):
             return f"does not climb ({speed})"
         return "slides out of view" if gone else f"slides back at {_range(1e3 * back[:, 0])} mm/s"
-    return f"climbs {speed}" if chance > _SURE else f"climbs in {100.0 * chance:.0f} % of the samples"
+    return f"climbs {speed}" if chance > _SURE else f"climbs in {100.0 * chance:.0f} % of the samples ({speed})"
 
 
 def _range(values: Floats) -> str:

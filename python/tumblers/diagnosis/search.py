@@ -38,6 +38,8 @@ _GRID, _HALVINGS, _EARLY_HALVINGS, _FEW, _WORST, _HINTS = (0.2, 0.5, 0.8, 1.0), 
 # How many fits are held against their own noise, how often it is measured after a further fit at most, and what that
 # must take off the objective for another round.
 _SETTLED, _ROUNDS, _ENOUGH = 2, 2, 5.0
+# What comes so near to the best is held against its own noise, so many at most.
+_NEAR, _MOST_NEAR = 300.0, 6
 # Beginnings: where the mean square stays above this, so many hypotheses are fitted from so many points over their range
 # (of one parameter, of more), to these shares of the trials' time one after another, the best so many points followed.
 _WANTING, _REFINED, _ONE_PARAMETER_POINTS, _MORE_POINTS, _STAGES, _FOLLOWED = 0.85, 2, 8, 16, (0.25, 0.5), 1
@@ -90,7 +92,7 @@ class Search:
         singles = self._settled(singles)
         if self._is_wanting(singles[0]):
             singles = self._settled(self._refined(singles, _REFINED))
-        return [nominal, *sorted([*singles, *self._pairs(singles)], key=_total)]
+        return [nominal, *self._each_by_itself([*singles, *self._pairs(singles)])]
 
     def judged_again(self, contenders: Sequence[Contender]) -> list[Contender]:
         """Hold the same fits against another noise, the best first.
@@ -199,7 +201,24 @@ class Search:
             # The derivatives where it is, against its own noise.
             self.comparison.take_noise_of(best.effects)
             here = self.fitter.fit(best.fit.hypothesis, best.point, evaluations=1)
-            made[k] = of_fit(self.fitter, here)
+            made[k] = replace(of_fit(self.fitter, here), settled=True)
+        return sorted(made, key=_total)
+
+    def _each_by_itself(self, contenders: Sequence[Contender]) -> list[Contender]:
+        """Hold what comes near the best against its own noise too: another's may flatter it, or wrong it."""
+        made = sorted(contenders, key=_total)
+        count = 0
+        for k, contender in enumerate(made):
+            assert contender.fit is not None
+            if contender.settled or contender.total > made[0].total + _NEAR:
+                continue
+            self.tell("each against its own noise", count, _MOST_NEAR)
+            self.comparison.take_noise_of(contender.effects)
+            fit = self.fitter.fit(contender.fit.hypothesis, contender.point, evaluations=_IDLE_POINTS)
+            made[k] = replace(of_fit(self.fitter, fit), settled=True)
+            count += 1
+            if count == _MOST_NEAR:
+                break
         return sorted(made, key=_total)
 
     def _against_itself(self, fit: Fit) -> Contender:
