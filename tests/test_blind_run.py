@@ -14,6 +14,8 @@ from tumblers.dataset import Dataset, LabTrial, Outcome, Sensor
 from tumblers.field import RotatingField
 from tumblers.presets import ROBOTS, SUBSTRATES
 
+THREADS = 2
+
 
 def write(folder: Path) -> Path:
     field = RotatingField(strength_T=0.010, frequency_Hz=3.0)
@@ -33,7 +35,7 @@ def diagnose(monkeypatch: pytest.MonkeyPatch) -> list[object]:
     says: list[object] = ['{"format": "tumblers-diagnosis/1"}']
 
     def stand_in(dataset: Dataset, *, jobs: int) -> SimpleNamespace:
-        assert jobs == 1
+        assert jobs == THREADS
         if isinstance(says[0], Exception):
             raise says[0]
         return SimpleNamespace(to_json=lambda: says[0])
@@ -48,22 +50,23 @@ def test_a_diagnosis_and_its_record_are_written(diagnose: list[object], tmp_path
     folder = write(tmp_path / "dataset-000")
     # The answers lie beside the datasets, and must not be needed.
     assert not _is_done(folder)
-    assert _diagnose(folder)
+    assert _diagnose(folder, THREADS)
     assert (folder / "diagnosis.json").read_text() == diagnose[0]
     record = json.loads((folder / "run.json").read_text())
     assert (record["version"], record["error"]) == (tumblers.__version__, None)
     assert record["seconds"] >= 0.0
+    assert record["threads"] == THREADS
     assert _is_done(folder)
 
 
 def test_another_version_or_a_failure_is_not_done(diagnose: list[object], tmp_path: Path) -> None:
     folder = write(tmp_path / "dataset-000")
-    _diagnose(folder)
+    _diagnose(folder, THREADS)
     record = json.loads((folder / "run.json").read_text())
     (folder / "run.json").write_text(json.dumps({**record, "version": "0"}))
     assert not _is_done(folder)
     diagnose[0] = InputError("trial", "nothing", "something")
-    assert not _diagnose(folder)
+    assert not _diagnose(folder, THREADS)
     assert not (folder / "diagnosis.json").exists()
     assert (
         json.loads((folder / "run.json").read_text())["error"] == "InputError: trial: found nothing, expected something"
@@ -73,8 +76,13 @@ def test_another_version_or_a_failure_is_not_done(diagnose: list[object], tmp_pa
     assert not _is_done(folder)
 
 
+def test_no_thread_is_refused_before_anything_is_diagnosed(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="threads: found 0, expected at least 1"):
+        run(tmp_path, threads=0)
+
+
 def test_what_is_done_stays_done(diagnose: list[object], tmp_path: Path) -> None:
-    _diagnose(write(tmp_path / "dataset-000"))
+    _diagnose(write(tmp_path / "dataset-000"), THREADS)
     assert run(tmp_path, jobs=1) == (0, 1, 0)
 
 
