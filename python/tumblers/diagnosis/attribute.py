@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from ..effects.base import Effect
 from .comparison import Comparison
-from .contender import Contender
+from .contender import Contender, of_nominal
 from .fit import Fitter, robust_cost
 from .hypothesis import PRIOR_SIGMA
 from .predictive import is_right
@@ -100,8 +100,8 @@ def attribute(
     """
     fitter = Fitter(comparison)
     search = Search(fitter, kinds, on_phase or (lambda _phase, _done, _total: None), seed)
+    right = is_right(comparison, of_nominal(fitter).residual)
     contenders = search.contenders()
-    right = is_right(comparison, next(c for c in contenders if not c.names).residual)
     ranked, dispersion = _ranked(contenders, comparison, search.names)
     # From here on all are seen against one noise, around the nominal model and around the best.
     comparison.take_noise_of(*dict.fromkeys([(), ranked[0].effects]))

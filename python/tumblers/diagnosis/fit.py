@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
+from ..effects.base import Effect
 from .comparison import FAR, Comparison, Residual
 from .hypothesis import PRIOR_SIGMA, Hypothesis
 from .pose import Path
@@ -32,6 +33,8 @@ __all__ = ["HUBER", "Fit", "Fitter", "robust_cost"]
 
 Floats = NDArray[np.float64]
 
+# Of the changes around a hypothesis, what may count as noise.
+_SHARES = (1.0, 0.5, 0.25, 0.1)
 # How often the trials' weights are taken anew, and the change of one that asks for it.
 _WEIGHINGS, _REWEIGHED = 2, 1.3
 # Where the loss turns from square to linear, in sigmas.
@@ -139,6 +142,26 @@ class Fitter:
         track = len(values) - len(self.comparison.floors[trial].outcome_scale)
         far = FAR * max(track, 1)
         return far * float(np.log1p(robust_cost(values[:track]) / far)) + robust_cost(values[track:])
+
+    def take_likeliest_noise(self, effects: tuple[Effect, ...]) -> None:
+        """Take the noise around a hypothesis, in each trial as much of it as makes the differences likeliest.
+
+        What halving the step or moving a nominal number changes bounds what may be wrong; how much is, the data know.
+
+        Parameters
+        ----------
+        effects
+            The hypothesis; none for the nominal model.
+        """
+        comparison = self.comparison
+        paths = comparison.simulator.run([Job(i, effects) for i in self.trials])
+        totals = []
+        for share in _SHARES:
+            comparison.take_noise_of(effects, shares=[share] * len(self.trials))
+            residual = comparison.residual(paths)
+            totals.append([self.trial_cost(residual, i) + comparison.floors[i].log_determinant for i in self.trials])
+        best = np.argmin(np.array(totals), axis=0)
+        comparison.take_noise_of(effects, shares=[_SHARES[k] for k in best])
 
     def _weights(self, residual: Residual, chosen: Sequence[int]) -> Floats:
         """Square roots of the weights of the trials' numbers, 1 for outcomes, shape (n,)."""

@@ -19,7 +19,8 @@ to the formats' own torque scheme: numbers that were themselves computed, in wha
 
 A strong effect can make a motion chaotic that was not, or end a chaos. Each hypothesis that counts therefore has its
 own Σ, with the changes around itself, and pays for it: a likelihood has ln det Σ beside the squares, so that nothing is
-explained by being vague. For what is shown of several hypotheses together, Σ adds the changes around each.
+explained by being vague; how much of the changes is needed in a trial, a share of 1 or less, its differences say
+(`Fitter.take_likeliest_noise`). For what is shown of several hypotheses together, Σ adds the changes around each.
 """
 
 from __future__ import annotations
@@ -207,29 +208,36 @@ def measure_sensitivity(
         The hypothesis around which it is measured.
     """
     trials = range(len(readers))
-    jobs = [Job(i, effects) for i in trials] + [Job(i, effects, divisor=2) for i in trials]
-    edits = (simulator.coarse, *_EDITS)
+    jobs = [Job(i, effects, divisor=divisor) for divisor in (1, 2) for i in trials]
+    # A small change of a number is seen in twice the step as well.
+    edits = (simulator.coarse, simulator.twice, *(_in_twice(simulator, edit) for edit in _EDITS))
     jobs += [Job(i, effects, edit=edit) for i in trials for edit in edits]
     paths = simulator.run(jobs)
     count, first = len(edits), 2 * len(readers)
     out = []
     for i, reader in enumerate(readers):
         here, halved = paths[i], paths[len(readers) + i]
-        coarse, *moved = paths[first + count * i : first + count * (i + 1)]
+        coarse, twice, *moved = paths[first + count * i : first + count * (i + 1)]
         out.append(
             Sensitivity(
                 _change(reader, here, halved),
                 _outcome_change(reader, here, halved),
                 _change(reader, here, coarse),
                 _outcome_change(reader, here, coarse),
-                [_change(reader, here, other) for other in moved],
-                [_outcome_change(reader, here, other) for other in moved],
+                [_change(reader, twice, other) for other in moved],
+                [_outcome_change(reader, twice, other) for other in moved],
             )
         )
     return out
 
 
-def build_floors(readers: tuple[Reader, ...], around: Sequence[list[Sensitivity]]) -> tuple[Floor, ...]:
+def _in_twice(simulator: Simulator, edit: Edit) -> Edit:
+    return lambda scenario: edit(simulator.twice(scenario))
+
+
+def build_floors(
+    readers: tuple[Reader, ...], around: Sequence[list[Sensitivity]], shares: Sequence[float] | None = None
+) -> tuple[Floor, ...]:
     """Return the noise of each trial.
 
     Parameters
@@ -238,8 +246,14 @@ def build_floors(readers: tuple[Reader, ...], around: Sequence[list[Sensitivity]
         Of the dataset's trials.
     around
         What moves the paths, by hypothesis and trial; the last one's tolerances are the fit's.
+    shares
+        By trial, how much of these changes counts as noise; all of them if None.
     """
-    return tuple(_floor(reader, [each[i] for each in around]) for i, reader in enumerate(readers))
+    counted = [1.0] * len(readers) if shares is None else shares
+    return tuple(
+        _floor(reader, [each[i] for each in around], share)
+        for i, (reader, share) in enumerate(zip(readers, counted, strict=True))
+    )
 
 
 def _change(reader: Reader, path: Path | None, other: Path | None) -> dict[str, Floats]:
@@ -272,7 +286,7 @@ def _around(change: Floats) -> Floats:
     return np.asarray(maximum_filter1d(np.abs(change), 3))
 
 
-def _floor(reader: Reader, around: Sequence[Sensitivity]) -> Floor:
+def _floor(reader: Reader, around: Sequence[Sensitivity], share: float) -> Floor:
     observed = reader.observed
     time = np.maximum(observed.time_s, 0.0)
     whiten: dict[str, Floats] = {}
@@ -283,12 +297,12 @@ def _floor(reader: Reader, around: Sequence[Sensitivity]) -> Floor:
         covariance = np.eye(len(t)) * observed.noise[name] ** 2
         for each in around if len(t) else ():
             if name in each.numerical:
-                d = each.numerical[name][valid[name]]
+                d = share * each.numerical[name][valid[name]]
                 covariance += _ALPHA**2 * np.outer(d, d) + np.diag((_STEP_SPREAD * _around(d)) ** 2)
                 covariance += float(np.mean(d**2)) / reader.duration_s * np.minimum.outer(t, t)
             for change in each.tolerances:
                 if name in change:
-                    covariance += np.diag((_TOLERANCE_SPREAD * _around(change[name][valid[name]])) ** 2)
+                    covariance += np.diag((share * _TOLERANCE_SPREAD * _around(change[name][valid[name]])) ** 2)
         whiten[name] = np.linalg.inv(np.linalg.cholesky(covariance)) if len(t) else covariance
     scale = {}
     for term in reader.outcome_kinds:

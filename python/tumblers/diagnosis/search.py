@@ -83,11 +83,13 @@ class Search:
 
     def contenders(self) -> list[Contender]:
         """Return the nominal model and what was fitted, those that count against their own noise."""
+        self.fitter.take_likeliest_noise(())
         nominal = of_nominal(self.fitter)
         singles = self._singles(nominal)
         if not singles or singles[0].total > nominal.total - _CLEAR:
             return [nominal, *singles]
         if self.comparison.halve_steps_for(singles[0].effects):
+            self.fitter.take_likeliest_noise(())
             nominal, singles = of_nominal(self.fitter), self.judged_again(singles)
         singles = self._settled(singles)
         if self._is_wanting(singles[0]):
@@ -199,7 +201,7 @@ class Search:
                 best = other
             assert best.fit is not None
             # The derivatives where it is, against its own noise.
-            self.comparison.take_noise_of(best.effects)
+            self.fitter.take_likeliest_noise(best.effects)
             here = self.fitter.fit(best.fit.hypothesis, best.point, evaluations=1)
             made[k] = replace(of_fit(self.fitter, here), settled=True)
         return sorted(made, key=_total)
@@ -213,7 +215,7 @@ class Search:
             if contender.settled or contender.total > made[0].total + _NEAR:
                 continue
             self.tell("each against its own noise", count, _MOST_NEAR)
-            self.comparison.take_noise_of(contender.effects)
+            self.fitter.take_likeliest_noise(contender.effects)
             fit = self.fitter.fit(contender.fit.hypothesis, contender.point, evaluations=_IDLE_POINTS)
             made[k] = replace(of_fit(self.fitter, fit), settled=True)
             count += 1
@@ -223,7 +225,7 @@ class Search:
 
     def _against_itself(self, fit: Fit) -> Contender:
         """Hold a fit against its own noise."""
-        self.comparison.take_noise_of(fit.hypothesis.effects(fit.point))
+        self.fitter.take_likeliest_noise(fit.hypothesis.effects(fit.point))
         return of_fit(self.fitter, self._at(fit))
 
     def _at(self, fit: Fit) -> Fit:
@@ -242,7 +244,7 @@ class Search:
         for k, contender in enumerate(made[:count] if tracked else ()):
             self.tell("points over the whole range", k, count)
             assert contender.fit is not None
-            self.comparison.take_noise_of(contender.effects)
+            self.fitter.take_likeliest_noise(contender.effects)
             hypothesis = contender.fit.hypothesis
             if k > 0 and len(contender.point) > _MANY:
                 continue
@@ -299,7 +301,7 @@ class Search:
     def _added(self, first: Contender, singles: Sequence[Contender], found: dict[frozenset[str], Contender]) -> None:
         """Fit the seconds that promise most beside a first, against its noise."""
         assert first.fit is not None
-        self.comparison.take_noise_of(first.effects)
+        self.fitter.take_likeliest_noise(first.effects)
         # What each is by itself is one more start.
         alone = {single.names: single.point for single in singles}
         others = [
@@ -317,7 +319,7 @@ class Search:
 
     def _joined(self, singles: Sequence[Contender], found: dict[frozenset[str], Contender]) -> None:
         """Fit the best of the best singles two and two, from each one's own best and from halves."""
-        self.comparison.take_noise_of(singles[0].effects)
+        self.fitter.take_likeliest_noise(singles[0].effects)
         tried: list[tuple[float, int, Hypothesis, Floats]] = []
         for first, second in combinations(singles[:_JOINED], 2):
             assert first.fit is not None

@@ -146,6 +146,17 @@ class Simulator:
             model=replace(scenario.model, magnetic_torque=scheme),
         )
 
+    def twice(self, scenario: Scenario) -> Scenario:
+        """Return a scenario in twice its step, but no longer than the longest.
+
+        Parameters
+        ----------
+        scenario
+            Any of this dataset's.
+        """
+        step = min(2.0 * scenario.run.step_s, _first_step(scenario.field))
+        return replace(scenario, run=replace(scenario.run, step_s=step))
+
     def _finer(self, job: Job) -> int:
         """Return by how much the trial's step is too long for a job's effects."""
         longest = min((effect.longest_step_s for effect in job.effects if not effect.is_neutral()), default=inf)
