@@ -17,7 +17,7 @@ _FORETOLD, _NO_WORSE = 1.5, 1.02
 # Where noise may explain it all, an effect is named only where that is less probable than this.
 _LEAST_DOUBT = 0.05
 # Evidence that is less than this factor apart (ln 20), or predictions that differ by less than this in noise sigmas.
-_TIED, _SAME = 3.0, 0.25
+_TIED, _SAME = 3.0, 0.05
 
 
 def judge(comparison: Comparison, attribution: Attribution, gap: Gap) -> tuple[Verdict, Contender]:
