@@ -168,6 +168,7 @@ class Diagnosis:
                     "why": proposed.why,
                     "trial": dict(proposed.trial),
                     "information_bits": proposed.information_bits,
+                    "within_ranges": proposed.within_ranges,
                     "predictions": {
                         effect: {kind: {"mean": mean, "sigma": sigma} for kind, (mean, sigma) in said.items()}
                         for effect, said in proposed.predictions.items()

@@ -262,7 +262,13 @@ def _proposal(
         if foretold.climbs:
             chance = foretold.climbs[place]
             predictions[label]["climbs"] = chance, (chance * (1.0 - chance)) ** 0.5
-    return NextTrial(why=why, trial=option.table(), information_bits=bits, predictions=predictions)
+    return NextTrial(
+        why=why,
+        trial=option.table(),
+        information_bits=bits,
+        predictions=predictions,
+        within_ranges=not option.outside,
+    )
 
 
 def _pair(foretold: _Foretold, a: int, b: int) -> _Foretold:

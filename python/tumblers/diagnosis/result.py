@@ -215,12 +215,15 @@ class NextTrial:
         Expected information about which effect is at work.
     predictions
         Effect to what would be seen: kind of observation to (mean, standard deviation).
+    within_ranges
+        Whether it stays within what the lab has done.
     """
 
     why: str
     trial: Mapping[str, Any]
     information_bits: float
     predictions: Mapping[str, Mapping[str, tuple[float, float]]]
+    within_ranges: bool = True
 
 
 @dataclass(frozen=True, eq=False)

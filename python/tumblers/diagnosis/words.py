@@ -27,6 +27,8 @@ _LABEL = 13
 # Share of the trials from which on they are counted rather than listed.
 _SPREAD = 0.5
 _MOST_REGIONS, _MOST_VALUES, _MOST_RULED_OUT = 3, 4, 6
+# A trial that tells so many times as much is worth a lab's trouble.
+_MUCH_MORE = 2.0
 # A missing force is named from this many standard deviations on.
 _SIGNIFICANT = 3.0
 _WRENCH = (("force", "N", 0), ("torque", "N m", 3))
@@ -141,7 +143,11 @@ def points(diagnosis: Diagnosis) -> tuple[tuple[str, str], ...]:
     said += [("tied", text) for text in _ties(diagnosis)]
     said += [("ruled out", text) for text in _ruled_out(diagnosis)]
     if diagnosis.next_trials:
-        said.append(("next trial", _next(diagnosis.next_trials[0])))
+        first, *others = diagnosis.next_trials
+        said.append(("next trial", _next(first)))
+        telling = [t for t in others if t.information_bits > _MUCH_MORE * first.information_bits]
+        # Beyond the ranges of the lab only where that is worth the trouble.
+        said += [("or, beyond", f"what was done so far: {_next(other)}") for other in telling[:1]]
     said += [("caution", text) for text in cautions(diagnosis)]
     return tuple(said)
 
