@@ -21,7 +21,7 @@ from .diagnosis import Diagnosis
 from .estimate import intervals, samples
 from .fit import Fitter, robust_cost
 from .floor import TOLERANCES
-from .held_out import HeldOut, folds, held_out, shrink
+from .held_out import HeldOut, folds, held_out, is_foretold, shrink
 from .localise import localise
 from .next_trial import next_trials
 from .overlay import overlays
@@ -117,7 +117,8 @@ class _Conclusion:
             self.held_out(contender)
         best = attribution.contenders[0]
         gap = shrink(self.fitter, nominal, self.held_out(best), self.seed)
-        verdict, chosen = judge(comparison, attribution, gap)
+        foretold = is_foretold(self.fitter, nominal, self.held_out(best), gap)
+        verdict, chosen = judge(comparison, attribution, foretold)
         if chosen is not best:
             gap = shrink(self.fitter, nominal, nominal, self.seed)
         tied = ties(comparison, attribution, chosen)

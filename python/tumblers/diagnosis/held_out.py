@@ -19,7 +19,7 @@ from .fit import Fitter, robust_cost
 from .result import Gap, Interval
 from .simulator import Job
 
-__all__ = ["NOISE_FLOOR", "HeldOut", "folds", "held_out", "shrink"]
+__all__ = ["NOISE_FLOOR", "HeldOut", "folds", "held_out", "is_foretold", "shrink"]
 
 Floats = NDArray[np.float64]
 
@@ -28,6 +28,8 @@ NOISE_FLOOR = 1.0
 _FOLDS = 4
 _EVALUATIONS = 3
 _RESAMPLES = 400
+# A right model's mean square on trials that no fit has seen, and how much worse than nominal it may be there.
+_FORETOLD, _NO_WORSE = 1.5, 1.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +104,27 @@ def held_out(fitter: Fitter, contender: Contender) -> HeldOut:
         for i in left_out or fitter.trials:
             residuals[i], points[i] = residual, point
     return HeldOut(tuple(residuals[i] for i in fitter.trials), tuple(points[i] for i in fitter.trials))
+
+
+def is_foretold(fitter: Fitter, nominal: HeldOut, chosen: HeldOut, gap: Gap) -> bool:
+    """Whether a hypothesis stands on trials that its fit had not seen; not so where no trial can be left out.
+
+    Where the trial that shows the effect is left out, nothing can foretell it, and past a threshold a small error is a
+    long way: then it is enough to be no worse than the nominal model in the objective, whose logarithm bounds a trial.
+
+    Parameters
+    ----------
+    fitter
+        Of the dataset.
+    nominal, chosen
+        Of the nominal model and of the hypothesis.
+    gap
+        Of both.
+    """
+    if not gap.held_out_trials:
+        return False
+    costs = [sum(fitter.trial_cost(r, i) for i, r in enumerate(each.residuals)) for each in (nominal, chosen)]
+    return gap.after**2 <= _FORETOLD or costs[1] <= _NO_WORSE * costs[0]
 
 
 def shrink(fitter: Fitter, nominal: HeldOut, chosen: HeldOut, seed: int = 0) -> Gap:

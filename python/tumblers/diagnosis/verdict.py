@@ -8,19 +8,17 @@ from .attribute import Attribution
 from .comparison import Comparison
 from .contender import Contender
 from .predictive import is_right
-from .result import Gap, Verdict
+from .result import Verdict
 
 __all__ = ["judge", "ties"]
 
-# A right model's mean square on trials that no fit has seen, and how much worse than nominal it may be there.
-_FORETOLD, _NO_WORSE = 1.5, 1.02
 # Where noise may explain it all, an effect is named only where that is less probable than this.
 _LEAST_DOUBT = 0.05
 # Evidence that is less than this factor apart (ln 20), or predictions that differ by less than this in noise sigmas.
 _TIED, _SAME = 3.0, 0.05
 
 
-def judge(comparison: Comparison, attribution: Attribution, gap: Gap) -> tuple[Verdict, Contender]:
+def judge(comparison: Comparison, attribution: Attribution, foretold: bool) -> tuple[Verdict, Contender]:
     """Return the verdict, and the hypothesis that is chosen: the nominal model where there is no gap.
 
     Parameters
@@ -29,18 +27,14 @@ def judge(comparison: Comparison, attribution: Attribution, gap: Gap) -> tuple[V
         The dataset.
     attribution
         Every hypothesis.
-    gap
-        On trials that the best hypothesis had not seen.
+    foretold
+        Whether the best hypothesis stood on trials that its fit had not seen.
     """
     nominal, best = attribution.nominal, attribution.contenders[0]
     if attribution.nominal_is_right and (not best.names or nominal.probability > _LEAST_DOUBT):
         return "no_gap", nominal
     if not best.names:
         return "unexplained", best
-    # Where the trial that shows the effect is left out, nothing can foretell it: then no worse than nominal is enough.
-    foretold = bool(gap.held_out_trials) and (
-        gap.after**2 <= _FORETOLD or gap.after <= _NO_WORSE * gap.after_nuisance_only
-    )
     return ("explained" if is_right(comparison, best.residual) and foretold else "unexplained"), best
 
 
