@@ -26,8 +26,9 @@ __all__ = ["OnPhase", "Search"]
 Floats = NDArray[np.float64]
 OnPhase = Callable[[str, int, int], None]
 
-# Fits that take so much off the objective are worth another look.
-_CLEAR = 20.0
+# Fits that take so much off the objective are worth another look; less than so much off the nominal model's is not
+# worth any, for the prior and eight numbers that count as one ask for twice as much.
+_CLEAR, _WORTH = 20.0, 40.0
 # Trial points of a fit: of an effect that leads after the scan (so many do), of another, and where nothing is better
 # than neutral; of a pair, and where a good fit is taken further.
 _LEADING, _LEADING_POINTS, _POINTS, _IDLE_POINTS, _PAIR_POINTS, _POLISH_POINTS = 6, 6, 4, 2, 4, 6
@@ -42,13 +43,13 @@ _SETTLED, _ROUNDS, _ENOUGH = 2, 2, 5.0
 _NEAR, _MOST_NEAR = 300.0, 6
 # Beginnings: where the mean square stays above this, so many hypotheses are fitted from so many points over their range
 # (of one parameter, of more), to these shares of the trials' time one after another, the best so many points followed.
-_WANTING, _REFINED, _ONE_PARAMETER_POINTS, _MORE_POINTS, _STAGES, _FOLLOWED = 0.85, 2, 8, 16, (0.25, 0.5), 1
+_WANTING, _REFINED, _ONE_PARAMETER_POINTS, _MORE_POINTS, _STAGES, _FOLLOWED = 1.1, 2, 8, 16, (0.25, 0.5), 1
 _STAGE_POINTS = 4
 # Of an effect with more parameters than this only where it leads.
 _MANY = 4
 # Effects to which a second is added, the farther ones only where the best leaves a gap and they no more than so much of
 # its objective; seconds that are fitted with each; singles that are joined two and two, and joints that are fitted.
-_LEFT, _FIRSTS, _NEAR_BEST, _SECONDS, _JOINED, _JOINTS = 0.95, 2, 1.5, 3, 4, 2
+_LEFT, _FIRSTS, _NEAR_BEST, _SECONDS, _JOINED, _JOINTS = 1.1, 2, 1.5, 3, 4, 2
 # Pairs whose beginnings are searched, and singles for which one of the best pair is exchanged.
 _PAIRS_REFINED, _EXCHANGED = 2, 6
 
@@ -86,7 +87,7 @@ class Search:
         self.fitter.take_likeliest_noise(())
         nominal = of_nominal(self.fitter)
         singles = self._singles(nominal)
-        if not singles or singles[0].total > nominal.total - _CLEAR:
+        if not singles or singles[0].total > nominal.total - _WORTH:
             return [nominal, *singles]
         if self.comparison.halve_steps_for(singles[0].effects):
             self.fitter.take_likeliest_noise(())
