@@ -27,8 +27,8 @@ Floats = NDArray[np.float64]
 OnPhase = Callable[[str, int, int], None]
 
 # Fits that take so much off the objective are worth another look; less than so much off the nominal model's is not
-# worth any, for the prior and eight numbers that count as one ask for twice as much.
-_CLEAR, _WORTH = 20.0, 40.0
+# worth any, for the prior and eight numbers that count as one ask for as much.
+_CLEAR, _WORTH = 20.0, 70.0
 # Trial points of a fit: of an effect that leads after the scan (so many do), of another, and where nothing is better
 # than neutral; of a pair, and where a good fit is taken further.
 _LEADING, _LEADING_POINTS, _POINTS, _IDLE_POINTS, _PAIR_POINTS, _POLISH_POINTS = 6, 6, 4, 2, 4, 6
