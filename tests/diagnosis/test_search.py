@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -10,7 +12,7 @@ from tumblers.diagnosis.comparison import FAR, Comparison
 from tumblers.diagnosis.contender import of_nominal
 from tumblers.diagnosis.fit import Fitter, robust_cost
 from tumblers.diagnosis.hypothesis import Hypothesis
-from tumblers.diagnosis.search import Search
+from tumblers.diagnosis.search import Search, _firsts
 from tumblers.diagnosis.simulator import STEPS_S, Job, Simulator
 from tumblers.effects.base import Effect
 from tumblers.effects.catalogue import CATALOGUE
@@ -60,6 +62,15 @@ def test_a_trial_that_no_model_can_follow_counts_by_its_logarithm() -> None:
         residual.trials[0][:count] = size
         assert fitter.trial_cost(residual, 0) - outcomes == pytest.approx(expected, rel=1e-5)
     assert comparison.weight(0, residual.trials[0]) == pytest.approx(1.0 / (1.0 + 9.0 / FAR))
+
+
+@pytest.mark.parametrize("log_determinant", [0.0, -900.0])
+def test_the_best_is_always_a_first_and_what_is_far_behind_is_not(log_determinant: float) -> None:
+    dataset = measure(plan(LYING))
+    nominal = of_nominal(Fitter(Comparison(dataset, Simulator(dataset))))
+    costs = (400.0, 580.0, 620.0)
+    contenders = [replace(nominal, cost=cost, log_determinant=log_determinant) for cost in costs]
+    assert [contender.cost for contender in _firsts(contenders)] == [400.0, 580.0]
 
 
 def test_an_effect_that_makes_motion_fast_is_simulated_in_a_step_that_resolves_it() -> None:

@@ -47,9 +47,10 @@ _WANTING, _REFINED, _ONE_PARAMETER_POINTS, _MORE_POINTS, _STAGES, _FOLLOWED = 1.
 _STAGE_POINTS = 4
 # Of an effect with more parameters than this only where it leads.
 _MANY = 4
-# Effects to which a second is added, the farther ones only where the best leaves a gap and they no more than so much of
-# its objective; seconds that are fitted with each; singles that are joined two and two, and joints that are fitted.
-_LEFT, _FIRSTS, _NEAR_BEST, _SECONDS, _JOINED, _JOINTS = 1.1, 2, 1.5, 3, 4, 2
+# Effects to which a second is added, the farther ones only where the best leaves a gap, and they leave no more than so
+# much of its objective beyond it; seconds that are fitted with each; singles that are joined two and two, and joints
+# that are fitted.
+_LEFT, _FIRSTS, _NEAR_BEST, _SECONDS, _JOINED, _JOINTS = 1.1, 2, 0.5, 3, 4, 2
 # Pairs whose beginnings are searched, and singles for which one of the best pair is exchanged.
 _PAIRS_REFINED, _EXCHANGED = 2, 6
 
@@ -271,7 +272,7 @@ class Search:
         found: dict[frozenset[str], Contender] = {}
         # A second effect shows beside the best one; beside the next best only where the best leaves a gap.
         wanting = mean_square(self.comparison, singles[0].residual) > _LEFT
-        firsts = [c for c in singles[: _FIRSTS if wanting else 1] if c.total < _NEAR_BEST * singles[0].total]
+        firsts = _firsts(singles[: _FIRSTS if wanting else 1])
         for n, first in enumerate(firsts):
             self.tell("fitting pairs", n, len(firsts))
             self._added(first, singles, found)
@@ -343,6 +344,13 @@ class Search:
         names = frozenset(hypothesis.names)
         if names not in found or contender.total < found[names].total:
             found[names] = contender
+
+
+def _firsts(singles: Sequence[Contender]) -> list[Contender]:
+    """Return those of the best, best first, that are near enough to be a first of a pair."""
+    # A total may be negative, for a determinant may be small; what the best leaves never is.
+    near = singles[0].total + _NEAR_BEST * singles[0].cost
+    return [contender for contender in singles if contender.total <= near]
 
 
 def _total(contender: Contender) -> float:
