@@ -10,8 +10,8 @@ c = max(1, cost of the best / number of measurements) n_c
 with Σ the noise around each hypothesis and the prior u ~ N(0, σ_u² 1) on parameters in units of their range.
 Neighbouring frames and channels share what the model itself gets wrong, so that n_c of them count as one; and where
 even the best hypothesis leaves more than noise, everything that is concluded is widened by that (a quasi-likelihood;
-McCullagh and Nelder 1989, 9.2). Outcomes are few and count each for one. A small share of the
-probability belongs to all hypotheses alike.
+McCullagh and Nelder 1989, 9.2). Outcomes are few and count each for one. A small share of the probability belongs to
+all hypotheses alike.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from ..effects.base import Effect
 from .comparison import Comparison
-from .contender import Contender, of_nominal
+from .contender import Contender, of_fit, of_nominal
 from .fit import Fitter, robust_cost
 from .hypothesis import PRIOR_SIGMA
 from .predictive import is_right
@@ -112,14 +112,12 @@ def attribute(
 def _seen(fitter: Fitter, contender: Contender, first: bool) -> Contender:
     """Hold a contender against the noise of the moment; the first with its derivatives."""
     if contender.fit is None:
-        residual = fitter.comparison.residual(fitter.comparison.nominal_paths)
-        return replace(contender, residual=residual, cost=fitter.cost(residual, np.zeros(1)))
-    if first:
-        fit = fitter.fit(contender.fit.hypothesis, contender.fit.point, evaluations=_LAST_POINTS)
+        now = of_nominal(fitter)
+    elif first:
+        now = of_fit(fitter, fitter.fit(contender.fit.hypothesis, contender.point, evaluations=_LAST_POINTS))
     else:
-        residual = fitter.residuals(contender.fit.hypothesis, [contender.fit.point])[0]
-        fit = replace(contender.fit, residual=residual, cost=fitter.cost(residual, contender.point))
-    return replace(contender, fit=fit, residual=fit.residual, cost=fit.cost)
+        now = of_fit(fitter, fitter.again(contender.fit))
+    return replace(now, log_evidence=contender.log_evidence, probability=contender.probability)
 
 
 def _ranked(

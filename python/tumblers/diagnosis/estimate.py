@@ -79,12 +79,12 @@ def intervals(fitter: Fitter, attribution: Attribution, contender: Contender) ->
 def _gradients(hypothesis: Hypothesis, point: Floats) -> Floats:
     """Return the derivatives of the parameters by the coordinates, shape (p, p)."""
     step = 1e-6
+    turns = [parameter.turns for kind in hypothesis.kinds for parameter in kind.parameters]
     columns = []
     for j in range(len(point)):
         # Towards the inside of the range.
         signed = -step if point[j] + step > hypothesis.high[j] else step
         moved = hypothesis.values(point + signed * np.eye(len(point))[j]) - hypothesis.values(point)
-        turns = [parameter.turns for kind in hypothesis.kinds for parameter in kind.parameters]
         moved = np.where(turns, (moved + _HALF_TURN) % (2.0 * _HALF_TURN) - _HALF_TURN, moved)
         columns.append(moved / signed)
     return np.column_stack(columns)

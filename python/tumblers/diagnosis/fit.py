@@ -16,7 +16,7 @@ derivatives are finite differences, all of them one native batch.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -135,6 +135,17 @@ class Fitter:
         chosen = self.trials if train is None else train
         prior = float(np.sum(residual.prior**2) + np.sum((point / PRIOR_SIGMA) ** 2))
         return sum(self.trial_cost(residual, i) for i in chosen) + prior
+
+    def again(self, fit: Fit) -> Fit:
+        """Return a fit as it is against the noise of the moment, its derivatives as they were.
+
+        Parameters
+        ----------
+        fit
+            Found against any noise.
+        """
+        residual = self.residuals(fit.hypothesis, [fit.point])[0]
+        return replace(fit, residual=residual, cost=self.cost(residual, fit.point))
 
     def trial_cost(self, residual: Residual, trial: int) -> float:
         """Return what one trial adds to the objective."""

@@ -41,16 +41,17 @@ _GRID, _HALVINGS, _EARLY_HALVINGS, _FEW, _WORST, _HINTS = (0.2, 0.5, 0.8, 1.0), 
 _SETTLED, _ROUNDS, _ENOUGH = 2, 2, 5.0
 # What comes so near to the best is held against its own noise, so many at most.
 _NEAR, _MOST_NEAR = 300.0, 6
-# Beginnings: where the mean square stays above this, so many hypotheses are fitted from so many points over their range
-# (of one parameter, of more), to these shares of the trials' time one after another, the best so many points followed.
-_WANTING, _REFINED, _ONE_PARAMETER_POINTS, _MORE_POINTS, _STAGES, _FOLLOWED = 1.1, 2, 8, 16, (0.25, 0.5), 1
-_STAGE_POINTS = 4
+# A gap is left where the mean square stays above this against the likeliest noise.
+_WANTING = 1.1
+# Beginnings: so many hypotheses are tried at so many points over their range (of one parameter, of more), and from the
+# best of these fitted to these shares of the trials' time one after another, in so many trial points.
+_REFINED, _ONE_PARAMETER_POINTS, _MORE_POINTS, _STAGES, _STAGE_POINTS = 2, 8, 16, (0.25, 0.5), 4
 # Of an effect with more parameters than this only where it leads.
 _MANY = 4
 # Effects to which a second is added, the farther ones only where the best leaves a gap, and they leave no more than so
 # much of its objective beyond it; seconds that are fitted with each; singles that are joined two and two, and joints
 # that are fitted.
-_LEFT, _FIRSTS, _NEAR_BEST, _SECONDS, _JOINED, _JOINTS = 1.1, 2, 0.5, 3, 4, 2
+_FIRSTS, _NEAR_BEST, _SECONDS, _JOINED, _JOINTS = 2, 0.5, 3, 4, 2
 # Pairs whose beginnings are searched, and singles for which one of the best pair is exchanged.
 _PAIRS_REFINED, _EXCHANGED = 2, 6
 
@@ -92,25 +93,15 @@ class Search:
             return [nominal, *singles]
         if self.comparison.halve_steps_for(singles[0].effects):
             self.fitter.take_likeliest_noise(())
-            nominal, singles = of_nominal(self.fitter), self.judged_again(singles)
+            nominal, singles = of_nominal(self.fitter), self._judged_again(singles)
         singles = self._settled(singles)
         if self._is_wanting(singles[0]):
             singles = self._settled(self._refined(singles, _REFINED))
         return [nominal, *self._each_by_itself([*singles, *self._pairs(singles)])]
 
-    def judged_again(self, contenders: Sequence[Contender]) -> list[Contender]:
-        """Hold the same fits against another noise, the best first.
-
-        Parameters
-        ----------
-        contenders
-            Without the nominal model.
-        """
-        made = []
-        for contender in contenders:
-            assert contender.fit is not None
-            made.append(of_fit(self.fitter, self._at(contender.fit)))
-        return sorted(made, key=_total)
+    def _judged_again(self, contenders: Sequence[Contender]) -> list[Contender]:
+        """Hold the same fits against another noise, the best first."""
+        return sorted((of_fit(self.fitter, self.fitter.again(fit)) for fit in _fits(contenders)), key=_total)
 
     def _singles(self, nominal: Contender) -> list[Contender]:
         self.tell("first look at every effect", 0, 1)
@@ -228,12 +219,7 @@ class Search:
     def _against_itself(self, fit: Fit) -> Contender:
         """Hold a fit against its own noise."""
         self.fitter.take_likeliest_noise(fit.hypothesis.effects(fit.point))
-        return of_fit(self.fitter, self._at(fit))
-
-    def _at(self, fit: Fit) -> Fit:
-        """Hold a fit against the noise of the moment."""
-        residual = self.fitter.residuals(fit.hypothesis, [fit.point])[0]
-        return replace(fit, residual=residual, cost=self.fitter.cost(residual, fit.point))
+        return of_fit(self.fitter, self.fitter.again(fit))
 
     def _refined(self, contenders: Sequence[Contender], count: int) -> list[Contender]:
         """Fit the best so many again from points over their whole range, the beginnings of the trials first.
@@ -256,22 +242,18 @@ class Search:
             tried = [hypothesis.low + share * (hypothesis.high - hypothesis.low) for share in shares]
             residuals = fitter.residuals(hypothesis, tried, tracked, _STAGES[0])
             costs = [fitter.cost(residual, point, tracked) for residual, point in zip(residuals, tried, strict=True)]
-            begun = [
-                fitter.fit(hypothesis, tried[n], tracked, _STAGE_POINTS, _STAGES[0])
-                for n in np.argsort(costs, kind="stable")[:_FOLLOWED]
-            ]
-            point = min(begun, key=lambda fit: fit.cost).point
-            for stage in _STAGES[1:]:
+            point = tried[int(np.argmin(costs))]
+            for stage in _STAGES:
                 point = fitter.fit(hypothesis, point, tracked, _STAGE_POINTS, stage).point
             fit = fitter.fit(hypothesis, point, evaluations=_POLISH_POINTS)
-            made[k] = of_fit(fitter, min(self._at(contender.fit), fit, key=lambda fit: fit.cost))
+            made[k] = of_fit(fitter, min(self.fitter.again(contender.fit), fit, key=lambda fit: fit.cost))
         return sorted(made, key=_total)
 
     def _pairs(self, singles: Sequence[Contender]) -> list[Contender]:
         """Add a second effect to the best; none where none shows."""
         found: dict[frozenset[str], Contender] = {}
         # A second effect shows beside the best one; beside the next best only where the best leaves a gap.
-        wanting = mean_square(self.comparison, singles[0].residual) > _LEFT
+        wanting = self._is_wanting(singles[0])
         firsts = _firsts(singles[: _FIRSTS if wanting else 1])
         for n, first in enumerate(firsts):
             self.tell("fitting pairs", n, len(firsts))
@@ -344,6 +326,10 @@ class Search:
         names = frozenset(hypothesis.names)
         if names not in found or contender.total < found[names].total:
             found[names] = contender
+
+
+def _fits(contenders: Sequence[Contender]) -> list[Fit]:
+    return [contender.fit for contender in contenders if contender.fit is not None]
 
 
 def _firsts(singles: Sequence[Contender]) -> list[Contender]:
