@@ -31,7 +31,7 @@ from .hypothesis import PRIOR_SIGMA
 from .predictive import is_right
 from .search import OnPhase, Search
 
-__all__ = ["Attribution", "attribute"]
+__all__ = ["LAPSE", "Attribution", "attribute"]
 
 Floats = NDArray[np.float64]
 
@@ -39,7 +39,7 @@ Floats = NDArray[np.float64]
 _PRIOR = {0: 0.4, 1: 0.45, 2: 0.15}
 # How often the likeliest is wrong however strong the evidence: a form that the catalogue lacks, a minimum that no
 # search found. Shared by all, and of the order of what datasets with a known truth showed while this was developed.
-_LAPSE = 0.12
+LAPSE = 0.12
 # Trial points of the last fit of the best, from where it is.
 _LAST_POINTS = 3
 # So many neighbouring numbers of a track count as one.
@@ -147,7 +147,7 @@ def _ranked(
         scored.append((evidence, c))
     top = max(evidence for evidence, _ in scored)
     weights = np.exp([evidence - top for evidence, _ in scored])
-    shares = (1.0 - _LAPSE) * weights / weights.sum() + _LAPSE / len(weights)
+    shares = (1.0 - LAPSE) * weights / weights.sum() + LAPSE / len(weights)
     made = [
         replace(c, log_evidence=evidence, probability=float(share))
         for (evidence, c), share in zip(scored, shares, strict=True)

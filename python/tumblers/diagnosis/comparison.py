@@ -3,12 +3,13 @@
 For given paths the nuisances minimise
 
 ```text
-Σ |W (y - m(τ, o, ψ, s)) - D η|² + Σ (τ/σ_τ)² + |o/σ_o|² + (ψ/σ_ψ)² + (s/σ_s)² + |η|²
+Σ_t w_t |W (y - m(τ, o, ψ, s)) - D η|² + Σ (τ/σ_τ)² + |o/σ_o|² + (ψ/σ_ψ)² + (s/σ_s)² + |η|²
 ```
 
 within the sensor's tolerances, by Gauss and Newton's method: the clock and the origin of each trial for itself, the
 camera's heading and scale and the nominal numbers' being off (η, in their tolerances; D in `Floor.tolerance`) over all
-trials that count. What remains depends on the hypothesis alone.
+trials that count. A trial t that the paths are far from counts less, `w_t` = 1/(1 + mean square/κ). What remains
+depends on the hypothesis alone.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from ..effects.base import Effect
 from ..effects.catalogue import CATALOGUE, get
 from ..errors import InputError, show
 from ..version import __version__
-from .attribute import Attribution, attribute
+from .attribute import LAPSE, Attribution, attribute
 from .comparison import Comparison
 from .contender import Contender
 from .diagnosis import Diagnosis
@@ -246,11 +246,8 @@ def _assumptions(comparison: Comparison, attribution: Attribution) -> tuple[str,
     simulator, sensor = comparison.simulator, comparison.dataset.sensor
     clock = "half a frame" if sensor.time_offset_s is None else f"{1e3 * sensor.time_offset_s:g} ms"
     nominal = ", ".join(f"{name} {100.0 * share:g} %" for name, share in TOLERANCES.items())
-    stated = (
-        "as the dataset states"
-        if "magnetic_torque" in comparison.dataset.model_given
-        else "which the dataset leaves open"
-    )
+    given = "magnetic_torque" in comparison.dataset.model_given
+    stated = "as the dataset states" if given else "which the dataset leaves open"
     said = [
         f"The magnetic torque is taken by the scheme '{simulator.model.magnetic_torque}', {stated}.",
         "The robot starts at rest on the substrate, long axis along +y, when the field starts.",
@@ -258,9 +255,15 @@ def _assumptions(comparison: Comparison, attribution: Attribution) -> tuple[str,
         f"{1e6 * sensor.origin_tolerance_m:g} µm, heading within {sensor.heading_tolerance_deg:g}°, scale within "
         f"{100.0 * sensor.scale_tolerance:g} %. Larger ones are the effect camera_calibration.",
         f"The nominal numbers may be off by these standard deviations: {nominal}.",
-        "What halving the step changes is part of the noise.",
+        "What halving the step changes is part of the noise, around each hypothesis that counts for itself, and in "
+        "each trial as much of it as makes the differences likeliest.",
+        "Data that were themselves computed in a coarse step"
+        + ("" if given else " by the formats' own torque scheme")
+        + " are no gap: the change to it is fitted in every hypothesis.",
+        "A trial that a hypothesis cannot follow at all counts by its logarithm.",
         "In a trial left out, the sensor's nuisances and the nominal numbers are still fitted; effects are not.",
         f"Every {attribution.dispersion:.3g} measured numbers count as one in probabilities and intervals.",
+        f"However strong the evidence, {100.0 * LAPSE:.0f} % of the probability belongs to all hypotheses alike.",
         "Before anything is fitted, 40 % for no gap, 45 % for one effect, 15 % for two; no more than two are tried.",
         "Evidence is Laplace's approximation; intervals are 90 % profiles.",
     ]

@@ -13,9 +13,9 @@ with each nominal number moved by its tolerance; α = 2, β = 1, γ = 0.3. Multi
 of Σ, differences are plain numbers of unit variance; where the walk dominates they are the displacements from frame to
 frame, so that a stride, not a place, is compared.
 
-What the tolerances change alike in all trials is left to the fit: `d_p`, whitened,
-are the columns of nuisances with unit variance. So is the change to the longest step and, where the lab leaves it open,
-to the formats' own torque scheme: numbers that were themselves computed, in whatever step, are not taken for physics.
+What the tolerances change alike in all trials is left to the fit: `d_p`, whitened, are the columns of nuisances with
+unit variance. So is the change to the longest step and, where the lab leaves it open, to the formats' own torque
+scheme: numbers that were themselves computed, in whatever step, are not taken for physics.
 
 A strong effect can make a motion chaotic that was not, or end a chaos. Each hypothesis that counts therefore has its
 own Σ, with the changes around itself, and pays for it: a likelihood has ln det Σ beside the squares, so that nothing is

@@ -1,7 +1,7 @@
 """The posterior predictive test: whether what a hypothesis leaves is no more than noise.
 
 It holds the mean squared difference, over all trials and in the worst one, against what a right model gives: the floor
-is made so that this is below 1.
+is made so that this is about 1 at most.
 """
 
 from __future__ import annotations
