@@ -1,0 +1,65 @@
+"""Whether a hypothesis stands on trials that its fit had not seen."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+
+from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.fit import Fitter
+from tumblers.diagnosis.held_out import HeldOut, is_foretold, shrink
+from tumblers.diagnosis.simulator import Simulator
+
+from .lab import UPWARDS, measure, plan
+
+
+def fitter_of(trials: int) -> Fitter:
+    """Return the fitter of a few trials that take no time: what is said of them is made up."""
+    names = [f"t{k}" for k in range(trials)]
+    dataset = measure(plan([(name, UPWARDS, 0.0) for name in names], duration_s=0.1))
+    return Fitter(Comparison(dataset, Simulator(dataset, 1)))
+
+
+def wrong_by(fitter: Fitter, sigmas: Sequence[float]) -> HeldOut:
+    """Return what a hypothesis says that is wrong by so much throughout each trial left out."""
+    residual = fitter.comparison.residual(fitter.comparison.nominal_paths)
+    for values, size in zip(residual.trials, sigmas, strict=True):
+        values[:] = size
+    return HeldOut((residual,) * len(sigmas), (None,) * len(sigmas))
+
+
+def foretold(nominal: Sequence[float], chosen: Sequence[float]) -> bool:
+    fitter = fitter_of(len(nominal))
+    before, after = wrong_by(fitter, nominal), wrong_by(fitter, chosen)
+    gap = shrink(fitter, before, after)
+    # None of it is beyond where the loss is square.
+    assert gap.after**2 == pytest.approx(np.mean(np.square(chosen)))
+    return is_foretold(fitter, before, after, gap)
+
+
+@pytest.mark.parametrize(("size", "expected"), [(0.9, True), (1.2, True), (1.25, False), (3.9, False)])
+def test_what_leaves_little_on_trials_left_out_is_foretold_even_if_it_is_worse_than_nominal(
+    size: float, expected: bool
+) -> None:
+    assert foretold([0.5, 0.5], [size, size]) == expected
+
+
+# The objective at 3 sigmas goes up by 3.6 % with a tenth of a sigma, and may by 2 %.
+@pytest.mark.parametrize(("size", "expected"), [(2.0, True), (3.0, True), (3.03, True), (3.1, False), (3.9, False)])
+def test_what_leaves_much_is_foretold_only_if_it_is_no_worse_than_nominal(size: float, expected: bool) -> None:
+    assert foretold([3.0, 3.0], [size, size]) == expected
+
+
+def test_one_trial_that_nothing_could_foretell_does_not_speak_against_what_foretells_the_others() -> None:
+    nominal, chosen = [2.0, 2.0, 2.0], [1.0, 1.0, 3.9]
+    # In squares alone it would: the objective has a logarithm.
+    assert sum(np.square(chosen)) > 1.02 * sum(np.square(nominal))
+    assert foretold(nominal, chosen)
+    assert not foretold(nominal, [2.0, 2.0, 3.9])
+
+
+@pytest.mark.parametrize("size", [0.1, 3.0])
+def test_where_no_trial_can_be_left_out_nothing_is_foretold(size: float) -> None:
+    assert not foretold([3.0], [size])

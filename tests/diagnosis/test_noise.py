@@ -1,0 +1,95 @@
+"""The noise that differences are held against: its determinant, and how much of it each trial takes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tumblers.dataset import Dataset, Outcome
+from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.fit import _SHARES, Fitter
+from tumblers.diagnosis.simulator import Job, Simulator
+from tumblers.effects.base import Effect
+from tumblers.effects.magnetization_misalignment import MagnetizationMisalignment
+
+from .lab import PLANS, measure, plan, without
+
+
+def misaligned(degrees: float) -> tuple[Effect, ...]:
+    return (MagnetizationMisalignment(theta1_deg=degrees),)
+
+
+def compared(dataset: Dataset) -> Comparison:
+    return Comparison(dataset, Simulator(dataset, 1))
+
+
+def with_outcomes() -> Dataset:
+    """Return a short dataset with lost frames, and a speed that is better known than the model can compute it."""
+    dataset = without(measure(plan(PLANS[:2], duration_s=0.3)), "f02", slice(5, 9))
+    speed = Outcome(mean_speed_m_per_s=1e-3, sigma_m_per_s=1e-7)
+    return replace(dataset, trials=tuple(replace(trial, outcome=speed) for trial in dataset.trials))
+
+
+def test_the_determinant_is_that_of_the_covariances() -> None:
+    for floor in compared(with_outcomes()).floors:
+        expected = 0.0
+        for whiten in floor.whiten.values():
+            root = np.linalg.inv(whiten)
+            sign, logarithm = np.linalg.slogdet(root @ root.T)
+            assert sign == 1.0
+            expected += logarithm
+        outcomes = sum(np.log(1.0 / scale**2) for scale in floor.outcome_scale.values())
+        # Or a wrong term of theirs would not be seen.
+        assert outcomes > 1.0
+        # Inverting an inverse costs some digits.
+        assert floor.log_determinant == pytest.approx(expected + outcomes, rel=1e-9)
+
+
+def test_without_the_changes_the_determinant_is_that_of_the_sensor() -> None:
+    comparison = compared(measure(plan(PLANS[:2], duration_s=0.3)))
+    all_of_it = [floor.log_determinant for floor in comparison.floors]
+    comparison.take_noise_of((), shares=[0.0, 1.0])
+    first, second = comparison.floors
+    noise = comparison.readers[0].observed.noise
+    alone = sum(2.0 * kept.sum() * np.log(noise[name]) for name, kept in first.valid.items())
+    assert first.log_determinant == pytest.approx(alone, rel=1e-12)
+    # Changes only add to it, and a trial's share is its own.
+    assert first.log_determinant < all_of_it[0]
+    assert second.log_determinant == all_of_it[1]
+    assert comparison.log_determinant == pytest.approx(alone - all_of_it[0], rel=1e-9)
+
+
+# By trial, by how much the world's magnetization is turned: all, half or next to none of the noise is likeliest. One
+# trial's share moves the nuisances of all, and so the others' differences: the two trials are far enough from a tie.
+@pytest.mark.parametrize("degrees", [(0.0,), (3.0,), (10.0,), (0.0, 3.0), (0.0, 6.0)])
+@pytest.mark.parametrize("around", [(), misaligned(2.0)])
+def test_no_other_share_of_the_noise_is_likelier_in_any_trial(
+    degrees: tuple[float, ...], around: tuple[Effect, ...]
+) -> None:
+    planned = plan(PLANS[: len(degrees)], duration_s=0.4)
+    worlds = [measure(planned, misaligned(angle) if angle else (), seed=1) for angle in degrees]
+    dataset = replace(planned, trials=tuple(world.trials[i] for i, world in enumerate(worlds)))
+    comparison = compared(dataset)
+    fitter = Fitter(comparison)
+    paths = comparison.simulator.run([Job(i, around) for i in fitter.trials])
+
+    def total(trial: int) -> float:
+        residual = comparison.residual(paths)
+        return fitter.trial_cost(residual, trial) + comparison.floors[trial].log_determinant
+
+    fitter.take_likeliest_noise(around)
+    chosen, least = comparison.floors, [total(i) for i in fitter.trials]
+    others = []
+    for share in _SHARES:
+        comparison.take_noise_of(around, shares=[share] * len(fitter.trials))
+        others.append(comparison.floors)
+    for i in fitter.trials:
+        totals = []
+        for floors in others:
+            comparison.floors = (*chosen[:i], floors[i], *chosen[i + 1 :])
+            totals.append(total(i))
+        assert least[i] == pytest.approx(min(totals), rel=1e-9), f"trial {i}: {totals}"
+        # It matters which.
+        assert max(totals) > least[i] + 1.0
