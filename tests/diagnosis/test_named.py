@@ -12,7 +12,7 @@ from tumblers import Scenario, simulate
 from tumblers.dataset import Dataset
 from tumblers.diagnosis import Diagnosis, diagnose
 from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.fit import robust_cost
+from tumblers.diagnosis.loss import robust_cost
 from tumblers.diagnosis.pose import Path
 from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects import get

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.fit import HUBER, robust_cost
+from tumblers.diagnosis.loss import HUBER, robust_cost
 from tumblers.diagnosis.pose import Path, body_axis, heading_of, relative_turn, tilt_of
 from tumblers.diagnosis.reading import climbed
 from tumblers.diagnosis.simulator import Simulator

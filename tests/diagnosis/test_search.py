@@ -10,8 +10,9 @@ from numpy.testing import assert_allclose
 
 from tumblers.diagnosis.comparison import FAR, Comparison
 from tumblers.diagnosis.contender import of_nominal
-from tumblers.diagnosis.fit import Fitter, robust_cost
+from tumblers.diagnosis.fit import Fitter
 from tumblers.diagnosis.hypothesis import Hypothesis
+from tumblers.diagnosis.loss import robust_cost
 from tumblers.diagnosis.search import Search, _firsts
 from tumblers.diagnosis.simulator import STEPS_S, Job, Simulator
 from tumblers.effects.base import Effect

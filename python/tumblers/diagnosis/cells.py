@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..field import RotatingField, StaticField
 from .comparison import Comparison, Residual
-from .fit import HUBER
+from .loss import huber
 from .observed import CHANNELS
 from .pose import Path
 
@@ -97,11 +97,11 @@ class Cells:
                 mode = np.full(len(times), -1.0)
                 if path is not None and not outcome and len(times):
                     where, mode = path.at(clock)[0][:, :2], path.mode_at(clock).astype(np.float64)
-                loss = _loss(values)
+                loss = huber(values)
                 level = 1.0 if outcome or not len(times) else min(1.0, float(np.median(values**2)) / _MEDIAN)
                 block = {
                     "loss": loss,
-                    "fresh": _loss(_gained(values)) if channel in _LASTING and not outcome else loss,
+                    "fresh": huber(_gained(values)) if channel in _LASTING and not outcome else loss,
                     "noise": np.full(len(times), level),
                     "channel": np.full(len(times), float(CHANNELS.index(channel))),
                     "trial": np.full(len(times), float(i)),
@@ -139,11 +139,6 @@ class Cells:
 
 
 _KEYS = tuple(Cells.__dataclass_fields__)
-
-
-def _loss(values: Floats) -> Floats:
-    size = np.abs(values)
-    return np.asarray(np.where(size <= HUBER, size**2, 2.0 * HUBER * size - HUBER**2), dtype=np.float64)
 
 
 def _gained(values: Floats) -> Floats:

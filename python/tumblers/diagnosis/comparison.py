@@ -15,7 +15,7 @@ depends on the hypothesis alone.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import radians
 
 import numpy as np
@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from ..dataset import Dataset
 from ..effects.base import Effect
 from .floor import SHARED, Floor, Sensitivity, build_floors, choose_steps, measure_sensitivity
+from .loss import robust_cost
 from .observed import observe
 from .pose import Path
 from .reading import Reader
@@ -39,8 +40,8 @@ _CLOCKS = np.linspace(-0.9, 0.9, 7)
 _OUTLIER = 6.0
 # A nominal number is not off by more than so many tolerances.
 _MOST_OFF = 3.0
-# A trial's track whose mean square is beyond this counts by its logarithm, and a number no more than this many sigmas.
-FAR, _FARTHEST = 3.0, 30.0
+# A trial's track whose mean square is beyond this counts by its logarithm.
+FAR = 3.0
 # What a trial counts that the model cannot run at all, in sigmas.
 _NOT_RUN = 30.0
 # A tolerance is two standard deviations; a clock's offset is uniform within it.
@@ -189,7 +190,7 @@ class Comparison:
             Its whitened differences, shape (n_i,).
         """
         track = values[: self.sizes[trial] - len(self.floors[trial].outcome_scale)]
-        return 1.0 / (1.0 + float(np.mean(np.minimum(track**2, _FARTHEST**2))) / FAR) if len(track) else 1.0
+        return 1.0 / (1.0 + robust_cost(track) / (FAR * len(track))) if len(track) else 1.0
 
     def labels(self, trial: int) -> list[tuple[str, Floats]]:
         """Return the channels (and outcomes) of a trial's differences and the times of each, s, in their order.
@@ -209,6 +210,7 @@ class Comparison:
         train: Sequence[int] | None = None,
         fit_nuisances: bool = True,
         share: float = 1.0,
+        tolerance: Floats | None = None,
     ) -> Residual:
         """Return how wrong a model is.
 
@@ -223,17 +225,36 @@ class Comparison:
         share
             Of each trial's time that counts; what is later, and outcomes where it is less than 1, has no difference. A
             whitened difference depends on the frames before it alone, so that a part is compared as it should be.
+        tolerance
+            How far the nominal numbers are off, shape (`SHARED`,); fitted if None.
         """
         count = len(self.readers)
         local, shared = np.zeros((count, 3)), np.zeros(2 + SHARED)
+        held = tolerance is not None
+        if tolerance is not None:
+            shared[2:] = tolerance
         train = range(count) if train is None else train
         if fit_nuisances:
             local[:, 0] = [self._clock(i, path, share) for i, path in enumerate(paths)]
             for _ in range(_ITERATIONS):
-                local, shared = self._improved(paths, local, shared, set(train), share)
+                local, shared = self._improved(paths, local, shared, set(train), share, held)
         trials = tuple(self._whitened(i, path, local[i], shared, share) for i, path in enumerate(paths))
         prior = np.concatenate([(local / self.local_sigmas).ravel(), shared / self.shared_sigmas])
         return Residual(trials, prior, local, shared[:2], shared[2:])
+
+    def held(self, paths: Sequence[Path | None], nuisances: Residual) -> Residual:
+        """Return how wrong a model is with all nuisances held where they were found against another noise.
+
+        Parameters
+        ----------
+        paths
+            The model's, one for each trial.
+        nuisances
+            Of the same or another model.
+        """
+        shared = np.concatenate([nuisances.camera, nuisances.tolerance])
+        trials = tuple(self._whitened(i, path, nuisances.local[i], shared, 1.0) for i, path in enumerate(paths))
+        return replace(nuisances, trials=trials)
 
     def raw(self, trial: int, path: Path, local: Floats, camera: Floats) -> dict[str, Floats]:
         """Return `measured - model` of a trial by channel, m or rad, NaN where lost, for given nuisances."""
@@ -284,10 +305,18 @@ class Comparison:
         return best[1]
 
     def _improved(
-        self, paths: Sequence[Path | None], local: Floats, shared: Floats, train: set[int], share: float
+        self,
+        paths: Sequence[Path | None],
+        local: Floats,
+        shared: Floats,
+        train: set[int],
+        share: float,
+        held: bool,
     ) -> tuple[Floats, Floats]:
         shared_weight = 1.0 / self.shared_sigmas**2
         normal, right = np.diag(shared_weight), -shared_weight * shared
+        if held:
+            right[2:] = 0.0
         blocks: dict[int, tuple[Floats, Floats, Floats]] = {}
         for i, path in enumerate(paths):
             floor, reader = self.floors[i], self.readers[i]
@@ -305,7 +334,7 @@ class Comparison:
             outcomes = self._outcomes(i, path, shared[:2])
             table = np.vstack([table, np.column_stack([np.zeros((len(outcomes), 5)), outcomes])])
             a, r = table[:, :3], table[:, 5] - floor.tolerance @ shared[2:]
-            g = np.hstack([table[:, 3:5], -floor.tolerance])
+            g = np.hstack([table[:, 3:5], np.zeros_like(floor.tolerance) if held else -floor.tolerance])
             # One trial that the model cannot follow must not turn the camera of all.
             counted = np.sqrt(self.weight(i, r))
             a, g, r = counted * a, counted * g, counted * r

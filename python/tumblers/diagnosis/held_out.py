@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from ..field import RotatingField, StaticField
 from .comparison import Residual
 from .contender import Contender
-from .fit import Fitter, robust_cost
+from .fit import Fitter
+from .loss import robust_cost
 from .result import Gap, Interval
 from .simulator import Job
 

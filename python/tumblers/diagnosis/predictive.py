@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .comparison import Comparison, Residual
-from .fit import robust_cost
+from .loss import robust_cost
 
 __all__ = ["is_right", "mean_square", "mean_squares"]
 

@@ -27,7 +27,7 @@ from ..scenario import Scenario
 from ..surroundings import Surroundings
 from .cells import MODES
 from .comparison import Comparison, Residual
-from .fit import HUBER, robust_cost
+from .loss import HUBER, robust_cost
 from .pose import Path
 from .result import MissingWrench
 from .simulator import Edit, Job

@@ -1,0 +1,39 @@
+"""Huber's loss of whitened differences: what the objective, the gap and the maps count in.
+
+ρ(r) = r² up to |r| = `HUBER`, 2 `HUBER` |r| - `HUBER`² beyond (Huber 1964)
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["HUBER", "huber", "robust_cost"]
+
+Floats = NDArray[np.float64]
+
+# Where the loss turns from square to linear, in sigmas.
+HUBER = 4.0
+
+
+def huber(values: Floats) -> Floats:
+    """Return ρ of each number.
+
+    Parameters
+    ----------
+    values
+        Whitened differences, of any shape.
+    """
+    size = np.abs(values)
+    return np.asarray(np.where(size <= HUBER, size**2, 2.0 * HUBER * size - HUBER**2), dtype=np.float64)
+
+
+def robust_cost(values: Floats) -> float:
+    """Return Σ ρ.
+
+    Parameters
+    ----------
+    values
+        Whitened differences, of any shape.
+    """
+    return float(np.sum(huber(values)))
