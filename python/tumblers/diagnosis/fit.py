@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from math import inf
 from typing import NamedTuple
 
 import numpy as np
@@ -26,19 +27,20 @@ from scipy.optimize import least_squares
 from ..effects.base import Effect
 from .comparison import FAR, Comparison, Residual
 from .hypothesis import PRIOR_SIGMA, Hypothesis
+from .loss import HUBER, robust_cost
 from .pose import Path
 from .simulator import Job
 
-__all__ = ["HUBER", "Fit", "Fitter", "robust_cost"]
+__all__ = ["Fit", "Fitter"]
 
 Floats = NDArray[np.float64]
 
 # Of the changes around a hypothesis, what may count as noise.
 _SHARES = (1.0, 0.5, 0.25, 0.1)
+# How often the shares are chosen, first with the nuisances that belong to all alike, then to the last choice.
+_MIXED = 3
 # How often the trials' weights are taken anew, and the change of one that asks for it.
 _WEIGHINGS, _REWEIGHED = 2, 1.3
-# Where the loss turns from square to linear, in sigmas.
-HUBER = 4.0
 # A derivative's step changes the differences by about this much (root mean square), within these bounds.
 _CHANGE, _LEAST_STEP, _MOST_STEP = 0.3, 1e-3, 5e-2
 # Derivatives of a step that is off by more than this factor are taken again.
@@ -47,12 +49,6 @@ _RESTEPPED = 3.0
 _NEAR = 0.15
 # A guess is simulated where it promises so much of the cost; the first effects' parameters move no farther than this.
 _PROMISE, _FARTHEST = 4.0, 0.3
-
-
-def robust_cost(values: Floats) -> float:
-    """Return Σ ρ, with ρ = r² up to `HUBER` and 2 HUBER |r| - HUBER² beyond."""
-    size = np.abs(values)
-    return float(np.sum(np.where(size <= HUBER, size**2, 2.0 * HUBER * size - HUBER**2)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,7 +150,7 @@ class Fitter:
         far = FAR * max(track, 1)
         return far * float(np.log1p(robust_cost(values[:track]) / far)) + robust_cost(values[track:])
 
-    def take_likeliest_noise(self, effects: tuple[Effect, ...]) -> None:
+    def take_likeliest_noise(self, effects: tuple[Effect, ...]) -> tuple[float, ...]:
         """Take the noise around a hypothesis, in each trial as much of it as makes the differences likeliest.
 
         What halving the step or moving a nominal number changes bounds what may be wrong; how much is, the data know.
@@ -163,16 +159,40 @@ class Fitter:
         ----------
         effects
             The hypothesis; none for the nominal model.
+
+        Returns
+        -------
+        tuple
+            By trial, how much of it is taken.
         """
         comparison = self.comparison
         paths = comparison.simulator.run([Job(i, effects) for i in self.trials])
-        totals = []
+        known = []
         for share in _SHARES:
             comparison.take_noise_of(effects, shares=[share] * len(self.trials))
-            residual = comparison.residual(paths)
-            totals.append([self.trial_cost(residual, i) + comparison.floors[i].log_determinant for i in self.trials])
-        best = np.argmin(np.array(totals), axis=0)
-        comparison.take_noise_of(effects, shares=[_SHARES[k] for k in best])
+            known.append(comparison.floors)
+
+        def likeliest(mixed: Residual | None) -> tuple[float, ...]:
+            totals = []
+            for floors in known:
+                comparison.floors = floors
+                residual = comparison.residual(paths) if mixed is None else comparison.held(paths, mixed)
+                totals.append([self.trial_cost(residual, i) + floors[i].log_determinant for i in self.trials])
+            return tuple(_SHARES[k] for k in np.argmin(np.array(totals), axis=0))
+
+        # A trial's share moves the nuisances of all: first all have the same, then the others have theirs.
+        shares = best = likeliest(None)
+        least = inf
+        for _ in range(_MIXED):
+            comparison.take_noise_of(effects, shares=shares)
+            mixed = comparison.residual(paths)
+            total = self.cost(mixed, np.zeros(1)) + comparison.log_determinant
+            if total >= least:
+                break
+            best, least = shares, total
+            shares = likeliest(mixed)
+        comparison.take_noise_of(effects, shares=best)
+        return best
 
     def _weights(self, residual: Residual, chosen: Sequence[int]) -> Floats:
         """Square roots of the weights of the trials' numbers, 1 for outcomes, shape (n,)."""
