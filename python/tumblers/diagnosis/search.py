@@ -29,13 +29,16 @@ OnPhase = Callable[[str, int, int], None]
 # Fits that take so much off the objective are worth another look; less than so much off the nominal model's is not
 # worth any, for the prior and eight numbers that count as one ask for as much.
 _CLEAR, _WORTH = 20.0, 70.0
-# Trial points of a fit: of an effect that leads after the scan (so many do), of another, and where nothing is better
-# than neutral; of a pair, and where a good fit is taken further.
+# Trial points of a fit: of an effect that leads after the scan (so many do), and of another (where nothing is better
+# than neutral only the derivatives are taken); where a fit has only to follow another noise; of a pair, and where a
+# good fit is taken further.
 _LEADING, _LEADING_POINTS, _POINTS, _IDLE_POINTS, _PAIR_POINTS, _POLISH_POINTS = 6, 6, 4, 2, 4, 6
 # Shares of the way from neutral to each end of a range that are tried where nothing explains the gap, how often the
 # stretches beside the best of them are halved (where nothing moves at first, where it moves at once), for effects with
 # no more parameters than this, for each of so many trials that are farthest off; the best points that are kept.
 _GRID, _HALVINGS, _EARLY_HALVINGS, _FEW, _WORST, _HINTS = (0.2, 0.5, 0.8, 1.0), 10, 3, 2, 3, 2
+# A stretch whose ends differ by less has nothing in it; what is beyond a threshold may by chance be as bad as before.
+_MOVED = 2.0
 # How many fits are held against their own noise, how often it is measured after a further fit at most, and what that
 # must take off the objective for another round.
 _SETTLED, _ROUNDS, _ENOUGH = 2, 2, 5.0
@@ -46,7 +49,7 @@ _WANTING = 1.1
 # Beginnings: so many hypotheses are tried at so many points over their range (of one parameter, of more), and from the
 # best of these fitted to these shares of the trials' time one after another, in so many trial points.
 _REFINED, _ONE_PARAMETER_POINTS, _MORE_POINTS, _STAGES, _STAGE_POINTS = 2, 8, 16, (0.25, 0.5), 4
-# Of an effect with more parameters than this only where it leads.
+# Of more parameters than this, points over the range tell nothing: beginnings are fitted from every start.
 _MANY = 4
 # Effects to which a second is added, the farther ones only where the best leaves a gap, and they leave no more than so
 # much of its objective beyond it; seconds that are fitted with each; singles that are joined two and two, and joints
@@ -96,8 +99,29 @@ class Search:
             nominal, singles = of_nominal(self.fitter), self._judged_again(singles)
         singles = self._settled(singles)
         if self._is_wanting(singles[0]):
-            singles = self._settled(self._refined(singles, _REFINED))
-        return [nominal, *self._each_by_itself([*singles, *self._pairs(singles)])]
+            led = singles[0].names
+            singles = self._refined(singles, _REFINED)
+            if self._is_wanting(singles[0]):
+                # Of many parameters no local fit can be trusted.
+                many = [n for n, c in enumerate(singles) if len(c.point) > _MANY and c.names != led]
+                for n in many:
+                    singles[n] = self._from_beginnings(singles[n])
+            singles = self._settled(singles)
+        if singles[0].total > nominal.total - _WORTH:
+            return [nominal, *self._each_by_itself(singles)]
+        pairs = self._pairs(singles)
+        if pairs:
+            singles = [self._nested(pairs[0], single) if k == 0 else single for k, single in enumerate(singles)]
+        return [nominal, *self._each_by_itself([*singles, *pairs])]
+
+    def _nested(self, pair: Contender, single: Contender) -> Contender:
+        """Fit the best single effect again from where it is in a pair: alone it must not have been fitted less far."""
+        if single.names[0] not in pair.names or pair.total > single.total - _CLEAR:
+            return single
+        assert single.fit is not None
+        (kind,) = single.fit.hypothesis.kinds
+        alone = self._alone(pair, kind, _POLISH_POINTS)
+        return min(single, replace(alone, settled=True), key=_total)
 
     def _judged_again(self, contenders: Sequence[Contender]) -> list[Contender]:
         """Hold the same fits against another noise, the best first."""
@@ -112,7 +136,7 @@ class Search:
         for k, (hypothesis, points) in enumerate(zip(self.possible, scans, strict=True)):
             self.tell("fitting each effect", k, len(self.possible))
             cost, start = points[0]
-            count = (_LEADING_POINTS if cost in leading else _POINTS) if np.any(start) else _IDLE_POINTS
+            count = (_LEADING_POINTS if cost in leading else _POINTS) if np.any(start) else 1
             singles.append(of_fit(self.fitter, self.fitter.fit(hypothesis, start, evaluations=count)))
         if singles and not is_right(self.comparison, min([nominal, *singles], key=_total).residual):
             singles = self._searched(nominal, singles)
@@ -170,7 +194,7 @@ class Search:
             # Of a plateau, its far end: beyond it something begins to move.
             place = max(n for n, share in enumerate(order) if known[share] < least + _CLEAR)
             near = order[max(place - 1, 0) : place + 2]
-            shares = [0.5 * (a + b) for a, b in pairwise(near) if abs(known[a] - known[b]) > _CLEAR]
+            shares = [0.5 * (a + b) for a, b in pairwise(near) if abs(known[a] - known[b]) > _MOVED]
             if len(known) == 1 + len(_GRID) and abs(known[_GRID[0]] - still) > _CLEAR:
                 # No plateau: what is better than neutral is for least squares to find, what is not may begin early.
                 halvings = 0 if least < still - _CLEAR else _EARLY_HALVINGS
@@ -226,28 +250,57 @@ class Search:
 
         Where an effect is strong, paths soon have nothing in common any more; their beginnings still have.
         """
+        made = list(contenders)
+        for k, contender in enumerate(made[:count]):
+            self.tell("points over the whole range", k, count)
+            if k == 0 or len(contender.point) <= _MANY:
+                made[k] = self._from_beginnings(contender)
+        return sorted(made, key=_total)
+
+    def _from_beginnings(self, contender: Contender) -> Contender:
+        """Fit a contender again, the beginnings of the trials first, or return it as it is where there are none."""
         fitter = self.fitter
         tracked = tuple(i for i in fitter.trials if len(self.comparison.readers[i].observed.time_s))
-        made = list(contenders)
-        for k, contender in enumerate(made[:count] if tracked else ()):
-            self.tell("points over the whole range", k, count)
-            assert contender.fit is not None
-            self.fitter.take_likeliest_noise(contender.effects)
-            hypothesis = contender.fit.hypothesis
-            if k > 0 and len(contender.point) > _MANY:
-                continue
-            free = hypothesis.high > hypothesis.low
-            points = _ONE_PARAMETER_POINTS if free.sum() < 2 else _MORE_POINTS
-            shares = qmc.Sobol(len(free), rng=np.random.default_rng(self.seed)).random(points)
-            tried = [hypothesis.low + share * (hypothesis.high - hypothesis.low) for share in shares]
-            residuals = fitter.residuals(hypothesis, tried, tracked, _STAGES[0])
-            costs = [fitter.cost(residual, point, tracked) for residual, point in zip(residuals, tried, strict=True)]
-            point = tried[int(np.argmin(costs))]
-            for stage in _STAGES:
-                point = fitter.fit(hypothesis, point, tracked, _STAGE_POINTS, stage).point
-            fit = fitter.fit(hypothesis, point, evaluations=_POLISH_POINTS)
-            made[k] = of_fit(fitter, min(self.fitter.again(contender.fit), fit, key=lambda fit: fit.cost))
-        return sorted(made, key=_total)
+        if not tracked:
+            return contender
+        assert contender.fit is not None
+        fitter.take_likeliest_noise(contender.effects)
+        hypothesis = contender.fit.hypothesis
+        point = self._beginning(contender, tracked)
+        for stage in _STAGES:
+            point = fitter.fit(hypothesis, point, tracked, _STAGE_POINTS, stage).point
+        fit = fitter.fit(hypothesis, point, evaluations=_POLISH_POINTS)
+        return of_fit(fitter, min(fitter.again(contender.fit), fit, key=lambda fit: fit.cost))
+
+    def _beginning(self, contender: Contender, tracked: tuple[int, ...]) -> Floats:
+        """Return the point that is best for the beginnings: of many over the range, or of fits from every start."""
+        assert contender.fit is not None
+        hypothesis = contender.fit.hypothesis
+        if len(contender.point) > _MANY:
+            fits = [
+                self.fitter.fit(hypothesis, start, tracked, _STAGE_POINTS, _STAGES[0])
+                for start in self._starts_within(contender)
+            ]
+            return np.asarray(min(fits, key=lambda fit: fit.cost).point)
+        free = hypothesis.high > hypothesis.low
+        points = _ONE_PARAMETER_POINTS if free.sum() < 2 else _MORE_POINTS
+        shares = qmc.Sobol(len(free), rng=np.random.default_rng(self.seed)).random(points)
+        tried: list[Floats] = [hypothesis.low + share * (hypothesis.high - hypothesis.low) for share in shares]
+        residuals = self.fitter.residuals(hypothesis, tried, tracked, _STAGES[0])
+        costs = [self.fitter.cost(residual, point, tracked) for residual, point in zip(residuals, tried, strict=True)]
+        return tried[int(np.argmin(costs))]
+
+    def _starts_within(self, contender: Contender) -> list[Floats]:
+        """Return a contender's point with the effect that has most parameters at each of its starts."""
+        kinds = [next(h for h in self.possible if h.names == (name,)) for name in contender.names]
+        most = max(range(len(kinds)), key=lambda n: len(kinds[n].neutral))
+        first = sum(len(h.neutral) for h in kinds[:most])
+        points = []
+        for start in kinds[most].starts:
+            point = contender.point.copy()
+            point[first : first + len(start)] = start
+            points.append(point)
+        return points
 
     def _pairs(self, singles: Sequence[Contender]) -> list[Contender]:
         """Add a second effect to the best; none where none shows."""
@@ -261,7 +314,7 @@ class Search:
         if wanting:
             self._joined(singles, found)
         pairs = sorted(found.values(), key=_total)
-        if not pairs or pairs[0].total > singles[0].total - _CLEAR:
+        if not pairs or pairs[0].total > singles[0].total - _WORTH:
             return pairs
         pairs = self._settled(pairs)
         found = {frozenset(pair.names): pair for pair in pairs}
@@ -271,16 +324,16 @@ class Search:
         for n, kind in enumerate(best.fit.hypothesis.kinds):
             self.tell("exchanging one of the pair", n, 2)
             if kind.name not in firsts[0].names:
-                self._added(self._alone(best, kind), singles[:_EXCHANGED], found)
+                self._added(self._alone(best, kind, _IDLE_POINTS), singles[:_EXCHANGED], found)
         again = self._refined(sorted(found.values(), key=_total), _PAIRS_REFINED)
         return self._settled(again) if again[0].fit is not best.fit else again
 
-    def _alone(self, pair: Contender, kind: type[Effect]) -> Contender:
+    def _alone(self, pair: Contender, kind: type[Effect], points: int) -> Contender:
         """Return one effect of a pair, as it is within it, as a contender of its own."""
         assert pair.fit is not None
         hypothesis = next(h for h in self.possible if h.kinds == (kind,))
         mine = np.array([name == kind.name for name, _ in pair.fit.hypothesis.keys])
-        return self._against_itself(self.fitter.fit(hypothesis, pair.point[mine], evaluations=_IDLE_POINTS))
+        return self._against_itself(self.fitter.fit(hypothesis, pair.point[mine], evaluations=points))
 
     def _added(self, first: Contender, singles: Sequence[Contender], found: dict[frozenset[str], Contender]) -> None:
         """Fit the seconds that promise most beside a first, against its noise."""

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 
 __all__ = ["SurfaceRoughness"]
 
+# A fit finds its way from one to the next.
+_WAVELENGTHS_M = (0.7e-3, 1.0e-3, 1.5e-3, 2.2e-3, 3.3e-3, 4.8e-3, 7.0e-3)
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SurfaceRoughness(Effect):
@@ -71,18 +74,14 @@ class SurfaceRoughness(Effect):
 
     @classmethod
     def starts(cls, scenario: Scenario) -> tuple[tuple[float, ...], ...]:  # noqa: ARG003
-        """Return three wavelengths, each with a small first wave that begins upwards, and one that begins downwards.
+        """Return wavelengths over the range, each with a small first wave: none of them tells of its neighbours.
 
         Parameters
         ----------
         scenario
             The nominal scenario.
         """
-        return tuple(
-            (wavelength, 0.0, 0.0, 0.0, amplitude, 0.0, 0.0)
-            for wavelength in (1e-3, 2e-3, 4e-3)
-            for amplitude in (5e-6, -5e-6)
-        )
+        return tuple((wavelength, 0.0, 0.0, 0.0, 5e-6, 0.0, 0.0) for wavelength in _WAVELENGTHS_M)
 
     def act(self, scenario: Scenario) -> Scenario:
         """Return the scenario with its substrate's heights added.
