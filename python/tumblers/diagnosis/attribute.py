@@ -26,8 +26,9 @@ from numpy.typing import NDArray
 from ..effects.base import Effect
 from .comparison import Comparison
 from .contender import Contender, of_fit, of_nominal
-from .fit import Fitter, robust_cost
+from .fit import Fitter
 from .hypothesis import PRIOR_SIGMA
+from .loss import robust_cost
 from .predictive import is_right
 from .search import OnPhase, Search
 
@@ -39,9 +40,9 @@ Floats = NDArray[np.float64]
 _PRIOR = {0: 0.4, 1: 0.45, 2: 0.15}
 # How often the likeliest is wrong however strong the evidence: a form that the catalogue lacks, a minimum that no
 # search found. Shared by all, and of the order of what datasets with a known truth showed while this was developed.
-LAPSE = 0.12
-# Trial points of the last fit of the best, from where it is.
-_LAST_POINTS = 3
+LAPSE = 0.06
+# Trial points of the last fit of the best, from where it is: intervals are no better than it.
+_LAST_POINTS = 12
 # So many neighbouring numbers of a track count as one.
 _ALIKE = 8.0
 # Of equals the one with fewer parameters is preferred, then the one that the catalogue lists first.

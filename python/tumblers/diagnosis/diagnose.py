@@ -19,15 +19,16 @@ from .comparison import Comparison
 from .contender import Contender
 from .diagnosis import Diagnosis
 from .estimate import intervals, samples
-from .fit import Fitter, robust_cost
+from .fit import Fitter
 from .floor import TOLERANCES
 from .held_out import HeldOut, folds, held_out, is_foretold, shrink
 from .localise import localise
+from .loss import robust_cost
 from .next_trial import next_trials
 from .overlay import overlays
-from .result import EffectEstimate, Interval, NextTrial, RankedHypothesis, TrialFloor
+from .result import EffectEstimate, HeatMap, Interval, NextTrial, RankedHypothesis, Region, TrialFloor
 from .search import OnPhase
-from .simulator import Simulator
+from .simulator import Job, Simulator
 from .verdict import judge, ties
 from .wrench import missing_wrench, wrench_regions
 
@@ -127,10 +128,10 @@ class _Conclusion:
         ranking = tuple(self._ranked(contender) for contender in attribution.contenders)
         floors, proposed = self._floors(), self._next(chosen, tied, tell)
         tell("where the gap lies", 0, 2)
-        # Where the nominal model parts from the data is seen against the noise around it, not around other hypotheses.
+        regions, maps = self._where(chosen)
+        # What is missing is seen against the noise around the nominal model, not around other hypotheses.
         comparison.take_noise_of(())
         still = comparison.residual(comparison.nominal_paths)
-        regions, maps = localise(comparison, still, comparison.nominal_paths)
         wrench = None
         if verdict != "no_gap":
             tell("the missing wrench", 1, 2)
@@ -159,6 +160,20 @@ class _Conclusion:
             seconds=perf_counter() - start,
             version=__version__,
         )
+
+    def _where(self, chosen: Contender) -> tuple[tuple[Region, ...], tuple[HeatMap, ...]]:
+        """Return where the nominal model parts from the data.
+
+        How much of what may be wrong with the computed motion really is, and how far the nominal numbers are off, shows
+        with the effects at work: the nominal model alone would hide its gap in either.
+        """
+        comparison = self.comparison
+        shares = self.fitter.take_likeliest_noise(chosen.effects)
+        paths = comparison.simulator.run([Job(i, chosen.effects) for i in self.fitter.trials])
+        tolerance = comparison.residual(paths).tolerance
+        comparison.take_noise_of((), shares=shares)
+        bare = comparison.residual(comparison.nominal_paths, tolerance=tolerance)
+        return localise(comparison, bare, comparison.nominal_paths)
 
     def _estimates(self, chosen: Contender, tied: dict[str, tuple[str, ...]]) -> tuple[EffectEstimate, ...]:
         found = intervals(self.fitter, self.attribution, chosen)

@@ -67,7 +67,8 @@ def intervals(fitter: Fitter, attribution: Attribution, contender: Contender) ->
     estimates = hypothesis.values(fit.point)
     parameters = [parameter for kind in hypothesis.kinds for parameter in kind.parameters]
     for j, (key, parameter) in enumerate(zip(hypothesis.keys, parameters, strict=True)):
-        low, high = hypothesis.ranges[j]
+        # Where a fit moves in other coordinates, it may leave a parameter's range a little.
+        low, high = min(hypothesis.ranges[j][0], estimates[j]), max(hypothesis.ranges[j][1], estimates[j])
         if parameter.turns:
             low, high = estimates[j] - _HALF_TURN, estimates[j] + _HALF_TURN
         ends = [float(np.clip(estimates[j] + sign * reach[j, sign] * deviation[j], low, high)) for sign in (-1.0, 1.0)]
