@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tumblers.diagnosis.comparison import FAR, Comparison
-from tumblers.diagnosis.contender import of_nominal
+from tumblers.diagnosis.contender import of_fit, of_nominal
 from tumblers.diagnosis.fit import Fitter
 from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.loss import robust_cost
@@ -20,9 +20,10 @@ from tumblers.effects.catalogue import CATALOGUE
 from tumblers.effects.contact_compliance import ContactCompliance
 from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.effects.magnetization_misalignment import MagnetizationMisalignment
+from tumblers.effects.surface_roughness import SurfaceRoughness
 from tumblers.field import StaticField
 
-from .lab import measure, plan
+from .lab import PLANS, measure, plan
 
 # A robot that lies on a slope: it slides where friction is lower than a sixth below the nominal one.
 LYING = (("lying", StaticField(strength_T=0.0, direction=(0.0, 1.0, 0.0)), 50.0),)
@@ -123,3 +124,20 @@ def _sliding_factor() -> float:
         assert path is not None
         low, high = (middle, high) if path.position_m[-1, 1] < -4e-4 else (low, middle)
     return low
+
+
+def test_the_wavelength_of_a_roughness_is_found_from_the_beginnings() -> None:
+    # Heights of one wavelength tell nothing of another: no fit from the middle of the range finds its way.
+    truth = SurfaceRoughness(wavelength_m=4e-3, cosine_m=(-5e-7, 1e-6, 2e-6), sine_m=(2e-7, -1e-6, -2e-6))
+    dataset = measure(plan(PLANS[:2], duration_s=1.2), (truth,))
+    comparison = Comparison(dataset, Simulator(dataset))
+    fitter = Fitter(comparison)
+    search = Search(fitter, [SurfaceRoughness], quiet, 0)
+    (hypothesis,) = search.possible
+    astray = of_fit(fitter, fitter.fit(hypothesis, hypothesis.starts[-1], evaluations=2))
+    found = search._from_beginnings(astray)
+    assert found.total < astray.total - 200.0
+    (effect,) = found.effects
+    assert isinstance(effect, SurfaceRoughness)
+    assert effect.wavelength_m == pytest.approx(truth.wavelength_m, rel=0.02)
+    assert_allclose(effect.sine_m, truth.sine_m, atol=5e-7)

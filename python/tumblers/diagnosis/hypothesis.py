@@ -36,6 +36,8 @@ class Hypothesis:
         Bounds of u, shape (p,).
     starts
         Points u from which a fit may start, shape (k, p).
+    close
+        More of them, for a search from the beginnings of the trials.
     ranges
         Plausible range of every parameter, shape (p, 2).
     """
@@ -46,6 +48,7 @@ class Hypothesis:
     low: Floats
     high: Floats
     starts: Floats
+    close: Floats
     ranges: Floats
 
     @classmethod
@@ -55,15 +58,20 @@ class Hypothesis:
         low, high = neutral.copy(), neutral.copy()
         widest = np.array([(p.neutral, p.neutral) for p in kind.parameters])
         points: dict[tuple[float, ...], None] = {}
+        close: dict[tuple[float, ...], None] = {}
         for scenario in scenarios:
             ranges = np.array(kind.fit_ranges(scenario))
             low, high = np.minimum(low, ranges[:, 0]), np.maximum(high, ranges[:, 1])
             own = np.array(kind.ranges(scenario))
             widest = np.column_stack([np.minimum(widest[:, 0], own[:, 0]), np.maximum(widest[:, 1], own[:, 1])])
             points |= dict.fromkeys(kind.to_fit(start) for start in kind.starts(scenario))
+            close |= dict.fromkeys(kind.to_fit(start) for start in kind.close_starts(scenario))
         scale = np.maximum(np.maximum(high - neutral, neutral - low), 1e-300)
-        starts = np.array([(np.array(point) - neutral) / scale for point in points]).reshape(-1, len(neutral))
-        return cls((kind,), neutral, scale, (low - neutral) / scale, (high - neutral) / scale, starts, widest)
+        starts, closer = (
+            np.array([(np.array(point) - neutral) / scale for point in those]).reshape(-1, len(neutral))
+            for those in (points, close)
+        )
+        return cls((kind,), neutral, scale, (low - neutral) / scale, (high - neutral) / scale, starts, closer, widest)
 
     def __add__(self, other: Hypothesis) -> Hypothesis:
         """Both sets of effects; only `other` has starts, from this one's neutral point."""
@@ -71,8 +79,8 @@ class Hypothesis:
             name: np.concatenate([getattr(self, name), getattr(other, name)])
             for name in ("neutral", "scale", "low", "high", "ranges")
         }
-        starts = np.hstack([np.zeros((len(other.starts), len(self.neutral))), other.starts])
-        return Hypothesis(self.kinds + other.kinds, starts=starts, **joined)
+        starts, close = (np.hstack([np.zeros((len(s), len(self.neutral))), s]) for s in (other.starts, other.close))
+        return Hypothesis(self.kinds + other.kinds, starts=starts, close=close, **joined)
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -49,8 +49,9 @@ _WANTING = 1.1
 # Beginnings: so many hypotheses are tried at so many points over their range (of one parameter, of more), and from the
 # best of these fitted to these shares of the trials' time one after another, in so many trial points.
 _REFINED, _ONE_PARAMETER_POINTS, _MORE_POINTS, _STAGES, _STAGE_POINTS = 2, 8, 16, (0.25, 0.5), 4
-# Of more parameters than this, points over the range tell nothing: beginnings are fitted from every start.
-_MANY = 4
+# Of more parameters than this, points over the range tell nothing: from all close starts, then from the best so
+# many, these shares are fitted.
+_MANY, _FOLLOWED = 4, ((0.1, None), (0.25, 4), (0.5, 2))
 # Effects to which a second is added, the farther ones only where the best leaves a gap, and they leave no more than so
 # much of its objective beyond it; seconds that are fitted with each; singles that are joined two and two, and joints
 # that are fitted.
@@ -266,37 +267,43 @@ class Search:
         assert contender.fit is not None
         fitter.take_likeliest_noise(contender.effects)
         hypothesis = contender.fit.hypothesis
-        point = self._beginning(contender, tracked)
-        for stage in _STAGES:
-            point = fitter.fit(hypothesis, point, tracked, _STAGE_POINTS, stage).point
+        begin = self._followed if len(contender.point) > _MANY else self._sampled
+        point = begin(contender, tracked)
         fit = fitter.fit(hypothesis, point, evaluations=_POLISH_POINTS)
         return of_fit(fitter, min(fitter.again(contender.fit), fit, key=lambda fit: fit.cost))
 
-    def _beginning(self, contender: Contender, tracked: tuple[int, ...]) -> Floats:
-        """Return the point that is best for the beginnings: of many over the range, or of fits from every start."""
+    def _sampled(self, contender: Contender, tracked: tuple[int, ...]) -> Floats:
+        """Return the point that is best for the beginnings, of many over the range, fitted to more and more of them."""
         assert contender.fit is not None
         hypothesis = contender.fit.hypothesis
-        if len(contender.point) > _MANY:
-            fits = [
-                self.fitter.fit(hypothesis, start, tracked, _STAGE_POINTS, _STAGES[0])
-                for start in self._starts_within(contender)
-            ]
-            return np.asarray(min(fits, key=lambda fit: fit.cost).point)
         free = hypothesis.high > hypothesis.low
         points = _ONE_PARAMETER_POINTS if free.sum() < 2 else _MORE_POINTS
         shares = qmc.Sobol(len(free), rng=np.random.default_rng(self.seed)).random(points)
         tried: list[Floats] = [hypothesis.low + share * (hypothesis.high - hypothesis.low) for share in shares]
         residuals = self.fitter.residuals(hypothesis, tried, tracked, _STAGES[0])
         costs = [self.fitter.cost(residual, point, tracked) for residual, point in zip(residuals, tried, strict=True)]
-        return tried[int(np.argmin(costs))]
+        point = tried[int(np.argmin(costs))]
+        for stage in _STAGES:
+            point = self.fitter.fit(hypothesis, point, tracked, _STAGE_POINTS, stage).point
+        return point
+
+    def _followed(self, contender: Contender, tracked: tuple[int, ...]) -> Floats:
+        """Return the point that is best after fits from all close starts, fewer of them over more of the trials."""
+        assert contender.fit is not None
+        hypothesis = contender.fit.hypothesis
+        points = self._starts_within(contender)
+        for stage, count in _FOLLOWED:
+            fits = [self.fitter.fit(hypothesis, point, tracked, _STAGE_POINTS, stage) for point in points[:count]]
+            points = [fit.point for fit in sorted(fits, key=lambda fit: fit.cost)]
+        return points[0]
 
     def _starts_within(self, contender: Contender) -> list[Floats]:
-        """Return a contender's point with the effect that has most parameters at each of its starts."""
+        """Return a contender's point with the effect that has most parameters at each of its close starts."""
         kinds = [next(h for h in self.possible if h.names == (name,)) for name in contender.names]
         most = max(range(len(kinds)), key=lambda n: len(kinds[n].neutral))
         first = sum(len(h.neutral) for h in kinds[:most])
         points = []
-        for start in kinds[most].starts:
+        for start in kinds[most].close:
             point = contender.point.copy()
             point[first : first + len(start)] = start
             points.append(point)

@@ -130,6 +130,17 @@ class Effect(ABC):
         return tuple(points)
 
     @classmethod
+    def close_starts(cls, scenario: Scenario) -> tuple[tuple[float, ...], ...]:
+        """Return the points from which an effect of many parameters is searched where it is strong: `starts`, or more.
+
+        Parameters
+        ----------
+        scenario
+            The nominal scenario.
+        """
+        return cls.starts(scenario)
+
+    @classmethod
     def to_fit(cls, values: Sequence[float]) -> tuple[float, ...]:
         """Return the coordinates in which a fit moves: the parameters, unless these turn in a circle.
 

@@ -17,8 +17,9 @@ if TYPE_CHECKING:
 
 __all__ = ["SurfaceRoughness"]
 
-# A fit finds its way from one to the next.
+# Where a relief is shallow, a fit finds its way from one to the next; where it is not, from one of the closer ones.
 _WAVELENGTHS_M = (0.7e-3, 1.0e-3, 1.5e-3, 2.2e-3, 3.3e-3, 4.8e-3, 7.0e-3)
+_CLOSE_RATIO, _CLOSE_COUNT = 1.217, 13
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -82,6 +83,18 @@ class SurfaceRoughness(Effect):
             The nominal scenario.
         """
         return tuple((wavelength, 0.0, 0.0, 0.0, 5e-6, 0.0, 0.0) for wavelength in _WAVELENGTHS_M)
+
+    @classmethod
+    def close_starts(cls, scenario: Scenario) -> tuple[tuple[float, ...], ...]:  # noqa: ARG003
+        """Return more wavelengths, each with a smaller first wave.
+
+        Parameters
+        ----------
+        scenario
+            The nominal scenario.
+        """
+        wavelengths = (_WAVELENGTHS_M[0] * _CLOSE_RATIO**k for k in range(_CLOSE_COUNT))
+        return tuple((wavelength, 0.0, 0.0, 0.0, 2e-6, 0.0, 0.0) for wavelength in wavelengths)
 
     def act(self, scenario: Scenario) -> Scenario:
         """Return the scenario with its substrate's heights added.
