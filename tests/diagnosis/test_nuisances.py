@@ -4,9 +4,16 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from tumblers.diagnosis import diagnose
+from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.floor import SHARED
+from tumblers.diagnosis.predictive import mean_square
+from tumblers.diagnosis.simulator import Simulator
+from tumblers.effects import get
 from tumblers.model import Model
 
 from .lab import UPWARDS, measure, plan, without
@@ -82,3 +89,23 @@ def test_frames_that_are_lost_throughout_a_trial_leave_the_others() -> None:
 def test_a_static_field_alone_is_enough_to_see_that_nothing_is_wrong() -> None:
     diagnosis = diagnose(measure(plan([("a", UPWARDS, 0.0), ("b", UPWARDS, 5.0)])), effects=CONSIDERED, jobs=2)
     assert diagnosis.verdict == "no_gap"
+
+
+def test_nominal_numbers_that_are_held_hide_no_gap() -> None:
+    # A moment that is 2 % weak is four tolerances off: fitted, they take half of the gap, held at 0 none of it.
+    dataset = measure(plan(), (get("magnetization_strength").from_vector((0.98,)),), seed=4)
+    comparison = Comparison(dataset, Simulator(dataset, 1))
+    paths = comparison.nominal_paths
+    fitted = comparison.residual(paths)
+    held = comparison.residual(paths, tolerance=np.zeros(SHARED))
+    assert np.all(held.tolerance == 0.0)
+    assert mean_square(comparison, held) > mean_square(comparison, fitted) + 0.1
+    # Held where they were found, they are what they were, and the sensor's nuisances with them.
+    again = comparison.residual(paths, tolerance=fitted.tolerance)
+    assert np.all(again.tolerance == fitted.tolerance)
+    assert_allclose(again.camera, fitted.camera, atol=1e-3)
+    assert mean_square(comparison, again) == pytest.approx(mean_square(comparison, fitted), rel=0.02)
+    # All held at once, nothing is fitted.
+    same = comparison.held(paths, fitted)
+    for before, after in zip(fitted.trials, same.trials, strict=True):
+        assert np.array_equal(before, after)
