@@ -19,7 +19,7 @@ from .jitter import Jitter
 from .lab import Lab
 from .law import Law
 from .layout import draw_lab, jitter_strength, world_scenario
-from .schedule import task
+from .schedule import Task, task
 from .sensing import Nuisances, measure
 from .strength import Strength, strength
 from .world import Scene, Solver, watch
@@ -34,6 +34,8 @@ QUIET_SIGMA, QUIET_TRIAL_SIGMA = 0.7, 1.3
 # What one effect should reach even where its range does not allow the target.
 _SEEN = 3.0
 _LABS, _DRAWS, _BISECTIONS, _CLOSE = 12, 3, 9, 0.12
+# One dataset that cannot be made must not cost the others: so often all is drawn again.
+_ATTEMPTS = 3
 # Labs after which another pair of effects is drawn: one of them may have no part in any lab's motion.
 _LABS_PER_PAIR = 3
 _SMALLEST = 1e-3
@@ -105,8 +107,17 @@ def draw_dataset(seed: int, index: int) -> tuple[Dataset, Answer]:
     SimulationError
         No world of the drawn kind could be made.
     """
-    rng = np.random.default_rng([seed, 0, index])
-    about = task(seed, index)
+    rng, about = np.random.default_rng([seed, 0, index]), task(seed, index)
+    for _ in range(_ATTEMPTS):
+        drawn = _draw(about, rng, index)
+        if drawn is not None:
+            return drawn
+    raise SimulationError(
+        f"no world for {' and '.join(about.names) or 'no effect'} was found in {_ATTEMPTS * _LABS} labs"
+    )
+
+
+def _draw(about: Task, rng: np.random.Generator, index: int) -> tuple[Dataset, Answer] | None:
     targets = _TARGETS if about.kind == "one" else _CLEAR_TARGETS
     target = float(rng.choice(targets))
     other = [bool(rng.random() < _OTHER_FORM) for _ in about.names]
@@ -138,7 +149,7 @@ def draw_dataset(seed: int, index: int) -> tuple[Dataset, Answer]:
         measured = _measured(about.kind, world, sized, rng, index)
         if measured is not None:
             return measured
-    raise SimulationError(f"no world for {' and '.join(about.names) or 'no effect'} was found in {_LABS} labs")
+    return None
 
 
 def _weakest(pair: tuple[_World, list[_Sized]]) -> float:
