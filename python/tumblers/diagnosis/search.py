@@ -99,21 +99,26 @@ class Search:
             self.fitter.take_likeliest_noise(())
             nominal, singles = of_nominal(self.fitter), self._judged_again(singles)
         singles = self._settled(singles)
-        if self._is_wanting(singles[0]):
-            led = singles[0].names
-            singles = self._refined(singles, _REFINED)
-            if self._is_wanting(singles[0]):
-                # Of many parameters no local fit can be trusted.
-                many = [n for n, c in enumerate(singles) if len(c.point) > _MANY and c.names != led]
-                for n in many:
-                    singles[n] = self._from_beginnings(singles[n])
-            singles = self._settled(singles)
+        # What is weak is found where it starts: only a strong cause has minima of its own, far away.
+        strong = not is_right(self.comparison, nominal.residual)
+        if strong and self._is_wanting(singles[0]):
+            singles = self._settled(self._far(singles))
         if singles[0].total > nominal.total - _WORTH:
             return [nominal, *self._each_by_itself(singles)]
-        pairs = self._pairs(singles)
+        pairs = self._pairs(singles, strong)
         if pairs:
-            singles = [self._nested(pairs[0], single) if k == 0 else single for k, single in enumerate(singles)]
+            singles = [self._nested(pairs[0], singles[0]), *singles[1:]]
         return [nominal, *self._each_by_itself([*singles, *pairs])]
+
+    def _far(self, singles: Sequence[Contender]) -> list[Contender]:
+        """Search far away for the best, and where they leave a gap for those that no local fit can be trusted with."""
+        made = self._refined(singles, _REFINED)
+        if self._is_wanting(made[0]):
+            for k, contender in enumerate(made):
+                if len(contender.point) > _MANY and contender.names != singles[0].names:
+                    self.tell("points over the whole range", _REFINED, _REFINED)
+                    made[k] = self._from_beginnings(contender)
+        return sorted(made, key=_total)
 
     def _nested(self, pair: Contender, single: Contender) -> Contender:
         """Fit the best single effect again from where it is in a pair: alone it must not have been fitted less far."""
@@ -309,11 +314,11 @@ class Search:
             points.append(point)
         return points
 
-    def _pairs(self, singles: Sequence[Contender]) -> list[Contender]:
+    def _pairs(self, singles: Sequence[Contender], strong: bool) -> list[Contender]:
         """Add a second effect to the best; none where none shows."""
         found: dict[frozenset[str], Contender] = {}
         # A second effect shows beside the best one; beside the next best only where the best leaves a gap.
-        wanting = self._is_wanting(singles[0])
+        wanting = strong and self._is_wanting(singles[0])
         firsts = _firsts(singles[: _FIRSTS if wanting else 1])
         for n, first in enumerate(firsts):
             self.tell("fitting pairs", n, len(firsts))
@@ -332,8 +337,10 @@ class Search:
             self.tell("exchanging one of the pair", n, 2)
             if kind.name not in firsts[0].names:
                 self._added(self._alone(best, kind, _IDLE_POINTS), singles[:_EXCHANGED], found)
-        again = self._refined(sorted(found.values(), key=_total), _PAIRS_REFINED)
-        return self._settled(again) if again[0].fit is not best.fit else again
+        pairs = sorted(found.values(), key=_total)
+        if strong and self._is_wanting(pairs[0]):
+            pairs = self._refined(pairs, _PAIRS_REFINED)
+        return self._settled(pairs) if pairs[0].fit is not best.fit else pairs
 
     def _alone(self, pair: Contender, kind: type[Effect], points: int) -> Contender:
         """Return one effect of a pair, as it is within it, as a contender of its own."""
