@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import json
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 
@@ -9,6 +10,7 @@ import pytest
 
 import tumblers
 from tumblers import InputError
+from tumblers.blind.repeat import repeat
 from tumblers.blind.run import _diagnose, _is_done, run
 from tumblers.dataset import Dataset, LabTrial, Outcome, Sensor
 from tumblers.field import RotatingField
@@ -57,6 +59,28 @@ def test_a_diagnosis_and_its_record_are_written(diagnose: list[object], tmp_path
     assert record["seconds"] >= 0.0
     assert record["threads"] == THREADS
     assert _is_done(folder)
+
+
+def test_the_slowest_are_diagnosed_again_for_the_same_answer(
+    diagnose: list[object], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for number, seconds in enumerate((2.0, 5.0, 3.0)):
+        folder = write(tmp_path / f"dataset-{number:03d}")
+        _diagnose(folder, THREADS)
+        record = json.loads((folder / "run.json").read_text())
+        (folder / "run.json").write_text(json.dumps({**record, "seconds": seconds}))
+    # Here and not in a process of their own, where the stand-in is not.
+    pool = SimpleNamespace(submit=lambda call, *of: SimpleNamespace(result=lambda: call(*of)))
+    monkeypatch.setattr("tumblers.blind.repeat.workers", lambda _jobs: nullcontext(pool))
+    assert repeat(tmp_path, count=2, threads=THREADS) == {"dataset-001": True, "dataset-002": True}
+    assert not (tmp_path / "dataset-000" / "repeat.json").exists()
+    diagnose[0] = '{"format": "tumblers-diagnosis/1", "verdict": "no_gap"}'
+    assert repeat(tmp_path, count=1, threads=THREADS) == {"dataset-001": False}
+    again = json.loads((tmp_path / "dataset-001" / "repeat.json").read_text())
+    assert (again["same"], again["threads"]) == (False, THREADS)
+    # Another diagnosis has not been repeated.
+    _diagnose(tmp_path / "dataset-001", THREADS)
+    assert not (tmp_path / "dataset-001" / "repeat.json").exists()
 
 
 def test_another_version_or_a_failure_is_not_done(diagnose: list[object], tmp_path: Path) -> None:

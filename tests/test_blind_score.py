@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -118,6 +119,18 @@ def value(scores: Scores, words: str) -> float | None:
     return next(c.value for c in scores.criteria if c.words.startswith(words))
 
 
+def test_what_was_diagnosed_again_counts_for_time_and_sameness() -> None:
+    again = [
+        replace(record(number, answer("none"), said("no_gap", shrink=None)), repeated_seconds=50.0 * (number + 1),
+                repeated_threads=4, repeated_same=number > 0)
+        for number in range(3)
+    ]  # fmt: skip
+    scores = score_records([*again, record(3, answer("none"), said("no_gap", shrink=None))], 7, lambda _: 0.0)
+    assert value(scores, "longest") == 150.0
+    assert value(scores, "diagnosed again") == pytest.approx(2 / 3)
+    assert "on 4 threads: at most 150 s" in page_of(scores)
+
+
 def test_scores_are_those_computed_by_hand() -> None:
     scores = scored()
     # Records 0, 1, 2 and 4 count: 0, 1 and 4 are right.
@@ -135,7 +148,9 @@ def test_scores_are_those_computed_by_hand() -> None:
     assert scores.overlaps["dataset-001"] == pytest.approx(1 / 3)
     assert value(scores, "where") == pytest.approx(1 / len(scores.overlaps))
     assert scores.regions["time_s"].share == 1.0
-    assert value(scores, "longest") == 200.0
+    assert value(scores, "longest") is None, "nothing was diagnosed again"
+    assert value(scores, "diagnosed again") is None
+    assert scores.seconds_longest == 200.0
     assert (scores.datasets, scores.diagnosed) == (12, 11)
     assert scores.confusion["friction_coefficient"] == {"friction_coefficient": 2, "no_gap": 1, "viscous_drag": 1}
     assert scores.confusion["outside"] == {"failed": 1, "unexplained": 2}

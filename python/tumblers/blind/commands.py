@@ -68,6 +68,27 @@ def _run(
         raise typer.Exit(1)
 
 
+@blind_app.command("repeat")
+def _repeat(
+    directory: _Directory,
+    count: Annotated[int, typer.Option(help="How many of them.")] = 5,
+    threads: Annotated[int, typer.Option(help="Threads of a diagnosis.")] = 4,
+) -> None:
+    """Diagnose the datasets that took longest again, one after another: for their time, and for the same answer.
+
+    \b
+    Examples:
+      tumblers blind repeat blind --count 5 --threads 4
+    """  # noqa: D301
+    from .repeat import repeat
+
+    with _as_options():
+        same = repeat(directory, count=count, threads=threads, progress=True)
+    typer.echo(f"{len(same)} diagnosed again, {sum(same.values())} of them the same")
+    if not all(same.values()):
+        raise typer.Exit(1)
+
+
 @blind_app.command("score")
 def _score(
     directory: _Directory,

@@ -79,7 +79,8 @@ def page_of(scores: Scores) -> str:
         ),
         "## Time",
         f"Mean {_number(scores.seconds_mean, 1)} s, longest {_number(scores.seconds_longest, 1)} s; wall time, each "
-        f"diagnosis on {'one thread' if scores.threads == 1 else f'{scores.threads} threads'}, others beside it.",
+        f"diagnosis on {'one thread' if scores.threads == 1 else f'{scores.threads} threads'}, others beside it."
+        + _repeated(scores),
         "## Every dataset",
         _table(
             ("dataset", "truth", "strength, sigma", "verdict", "named", "shrink", "s"),
@@ -98,6 +99,15 @@ def page_of(scores: Scores) -> str:
         ),
     ]
     return "\n\n".join(parts) + "\n"
+
+
+def _repeated(scores: Scores) -> str:
+    if scores.repeated_longest is None:
+        return ""
+    return (
+        f" The slowest again, one after another on {scores.repeated_threads} threads: at most "
+        f"{scores.repeated_longest:.0f} s."
+    )
 
 
 def print_scores(scores: Scores) -> None:

@@ -12,7 +12,8 @@ from typing import Any
 from ..errors import InputError, show, unreadable
 from .answer import Answer, seal
 from .make import ANSWERS_FORMAT, SEAL
-from .run import DIAGNOSIS, RECORD
+from .repeat import REPEAT_FORMAT
+from .run import DIAGNOSIS, RECORD, REPEAT
 
 __all__ = ["Record", "read_records"]
 
@@ -33,6 +34,8 @@ class Record:
         The table of ``diagnosis.json``; None where the dataset has none.
     seconds, threads, version
         How long the diagnosis took, on how many threads, and by which version it is.
+    repeated_seconds, repeated_threads, repeated_same
+        How long it took again with nothing beside it, on how many threads, and whether it was the same.
     """
 
     dataset: str
@@ -41,6 +44,9 @@ class Record:
     seconds: float | None = None
     threads: int = 1
     version: str | None = None
+    repeated_seconds: float | None = None
+    repeated_threads: int | None = None
+    repeated_same: bool | None = None
 
     @property
     def truth(self) -> tuple[str, ...]:
@@ -106,6 +112,7 @@ def _record(folder: Path, salt: object, answer: object, answers: Path) -> Record
         raise InputError(folder.name, show(answer), "an answer of this version", answers) from None
     diagnosis = _json(folder / DIAGNOSIS, _DIAGNOSIS_FORMAT) if (folder / DIAGNOSIS).exists() else None
     run = _json(folder / RECORD, "tumblers-blind-run/1") if (folder / RECORD).exists() else {}
+    again = _json(folder / REPEAT, REPEAT_FORMAT) if (folder / REPEAT).exists() else {}
     return Record(
         dataset=folder.name,
         answer=truth,
@@ -113,6 +120,9 @@ def _record(folder: Path, salt: object, answer: object, answers: Path) -> Record
         seconds=run.get("seconds"),
         threads=run.get("threads", 1),
         version=run.get("version"),
+        repeated_seconds=again.get("seconds"),
+        repeated_threads=again.get("threads"),
+        repeated_same=again.get("same"),
     )
 
 

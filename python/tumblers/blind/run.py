@@ -16,11 +16,13 @@ from ..progress import OnProgress, native_call
 from ..version import __version__
 from .make import workers
 
-__all__ = ["DIAGNOSIS", "RECORD", "RECORD_FORMAT", "Done", "run"]
+__all__ = ["DIAGNOSIS", "RECORD", "RECORD_FORMAT", "REPEAT", "Done", "run"]
 
 DIAGNOSIS = "diagnosis.json"
 # What was computed beside the diagnosis: how long it took, and by which version.
 RECORD, RECORD_FORMAT = "run.json", "tumblers-blind-run/1"
+# What `repeat` writes: of this diagnosis, so that another one takes it away.
+REPEAT = "repeat.json"
 
 
 class Done(NamedTuple):
@@ -95,6 +97,7 @@ def _diagnose(folder: Path, threads: int) -> bool:
     from ..dataset import load
     from ..diagnosis import diagnose
 
+    (folder / REPEAT).unlink(missing_ok=True)
     start = perf_counter()
     files: dict[Path, bytes | memoryview] = {}
     error = None

@@ -98,6 +98,8 @@ class Scores:
         Axis to how many regions in which a cause acts were overlapped by half or more.
     seconds_mean, seconds_longest, threads
         Time of a diagnosis, s, and the most threads that one had.
+    repeated_longest, repeated_threads
+        The same of those that were diagnosed again with nothing beside them; None where none was.
     criteria
         What has to hold.
     rows
@@ -119,6 +121,8 @@ class Scores:
     seconds_mean: float | None
     seconds_longest: float | None
     threads: int
+    repeated_longest: float | None
+    repeated_threads: int | None
     criteria: tuple[Criterion, ...]
     rows: tuple[Mapping[str, Any], ...]
     drawn: int
@@ -183,6 +187,8 @@ def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores
         same: [s for r in clear if r.same_form == same and (s := _shrink(r)) is not None] for same in (True, False)
     }
     seconds = [r.seconds for r in records if r.seconds is not None]
+    repeated = [r.repeated_seconds for r in records if r.repeated_seconds is not None]
+    same = [r.repeated_same for r in records if r.repeated_same is not None]
 
     def criterion(words: str, share: Share, low: float, high: float = 1.0) -> Criterion:
         return Criterion(words=words, value=share.share, low=low, high=high, count=share.count)
@@ -211,12 +217,13 @@ def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores
         middle("median shrink, another form", shrinks[False], 0.7),
         criterion("where: trials overlap by half or more", _count([o >= 0.5 for o in overlaps.values()]), 0.80),
         Criterion(
-            words="longest diagnosis, s",
-            value=max(seconds) if seconds else None,
+            words="longest of the slowest again, alone, s",
+            value=max(repeated) if repeated else None,
             low=0.0,
             high=_SLOWEST_S,
-            count=len(seconds),
+            count=len(repeated),
         ),
+        criterion("diagnosed again: the same answer", _count(same), 1.0),
     )
     return Scores(
         seed=seed,
@@ -239,6 +246,8 @@ def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores
         seconds_mean=mean(seconds) if seconds else None,
         seconds_longest=max(seconds) if seconds else None,
         threads=max((r.threads for r in records), default=1),
+        repeated_longest=max(repeated) if repeated else None,
+        repeated_threads=max((r.repeated_threads for r in records if r.repeated_threads is not None), default=None),
         criteria=criteria,
         rows=tuple(_row(r) for r in records),
         drawn=len(records),

@@ -212,6 +212,8 @@ class Search:
         """Hold the best so many against their own noise and fit them on; the best first."""
         made = sorted(contenders, key=_total)
         for k, contender in enumerate(made[:_SETTLED]):
+            if contender.settled:
+                continue
             self.tell("another look at the best", k, _SETTLED)
             assert contender.fit is not None
             best = self._against_itself(contender.fit)
@@ -340,7 +342,7 @@ class Search:
         pairs = sorted(found.values(), key=_total)
         if strong and self._is_wanting(pairs[0]):
             pairs = self._refined(pairs, _PAIRS_REFINED)
-        return self._settled(pairs) if pairs[0].fit is not best.fit else pairs
+        return self._settled(pairs)
 
     def _alone(self, pair: Contender, kind: type[Effect], points: int) -> Contender:
         """Return one effect of a pair, as it is within it, as a contender of its own."""

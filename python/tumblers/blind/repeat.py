@@ -1,0 +1,93 @@
+"""`repeat`: diagnoses the slowest datasets again, one after another, for their time alone and for the same answer."""
+
+from __future__ import annotations
+
+import json
+from os import PathLike
+from pathlib import Path
+from time import perf_counter
+
+from ..atomic import write_files
+from ..errors import InputError
+from ..progress import OnProgress, native_call
+from ..version import __version__
+from .make import workers
+from .run import DIAGNOSIS, RECORD, REPEAT
+
+__all__ = ["REPEAT_FORMAT", "repeat"]
+
+REPEAT_FORMAT = "tumblers-blind-repeat/1"
+
+
+def repeat(
+    directory: str | PathLike[str], *, count: int, threads: int, progress: bool | OnProgress = False
+) -> dict[str, bool]:
+    """Diagnose the datasets that took longest again, nothing beside them, and write ``repeat.json`` to each.
+
+    Parameters
+    ----------
+    directory
+        The folder in which `run` has diagnosed.
+    count
+        How many of them.
+    threads
+        Threads of a diagnosis.
+    progress
+        True for a progress bar over the datasets, or a callback that is told how many are done.
+
+    Returns
+    -------
+    dict
+        Dataset to whether the diagnosis is the same, byte for byte.
+
+    Raises
+    ------
+    InputError
+        A number below 1, or a folder without diagnoses of this version.
+    TumblersError
+        A dataset that cannot be diagnosed any more.
+    OSError
+        A folder that cannot be written to, or a full disk.
+    """
+    for name, value in (("count", count), ("threads", threads)):
+        if value < 1:
+            raise InputError(name, str(value), "at least 1")
+    found = {path.parent: _seconds(path) for path in Path(directory).glob(f"dataset-*/{RECORD}")}
+    took = {folder: seconds for folder, seconds in found.items() if seconds is not None}
+    if not took:
+        raise InputError(None, "no diagnoses of this version", "a folder of `tumblers blind run`", directory)
+    slowest = sorted(took, key=lambda folder: (-took[folder], folder.name))[:count]
+    same = {}
+    with native_call("diagnoses", len(slowest), progress) as on_progress, workers(1) as pool:
+        for number, folder in enumerate(slowest, start=1):
+            same[folder.name] = pool.submit(_again, folder, threads).result()
+            if on_progress is not None:
+                on_progress(number)
+    return same
+
+
+def _seconds(path: Path) -> float | None:
+    try:
+        record = json.loads(path.read_bytes())
+    except (OSError, ValueError):
+        return None
+    done = isinstance(record, dict) and record.get("version") == __version__ and record.get("error") is None
+    return float(record["seconds"]) if done and (path.parent / DIAGNOSIS).exists() else None
+
+
+def _again(folder: Path, threads: int) -> bool:
+    from ..dataset import load
+    from ..diagnosis import diagnose
+
+    start = perf_counter()
+    text = diagnose(load(folder), jobs=threads).to_json().encode()
+    same = text == (folder / DIAGNOSIS).read_bytes()
+    record = {
+        "format": REPEAT_FORMAT,
+        "version": __version__,
+        "seconds": perf_counter() - start,
+        "threads": threads,
+        "same": same,
+    }
+    write_files({folder / REPEAT: (json.dumps(record) + "\n").encode()})
+    return same
