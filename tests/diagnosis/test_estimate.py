@@ -67,7 +67,8 @@ def box() -> Hypothesis:
     """Return a range that is wider to one side than to the other, in both coordinates."""
     low, high = np.array([-1.0, -0.5]), np.array([0.8, 1.0])
     neutral, ranges = np.zeros(2), np.column_stack([low, high])
-    return Hypothesis((), neutral, np.ones(2), low, high, np.empty((0, 2)), ranges)
+    none = np.empty((0, 2))
+    return Hypothesis((), neutral, np.ones(2), low, high, none, none, ranges)
 
 
 @pytest.mark.parametrize(
