@@ -340,7 +340,8 @@ class Search:
             if kind.name not in firsts[0].names:
                 self._added(self._alone(best, kind, _IDLE_POINTS), singles[:_EXCHANGED], found)
         pairs = sorted(found.values(), key=_total)
-        if strong and self._is_wanting(pairs[0]):
+        # However little the best leaves: against a sharper noise another may leave as little.
+        if strong:
             pairs = self._refined(pairs, _PAIRS_REFINED)
         return self._settled(pairs)
 
