@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.contender import Contender
 from tumblers.diagnosis.fit import Fitter
-from tumblers.diagnosis.held_out import HeldOut, is_foretold, shrink
+from tumblers.diagnosis.held_out import HeldOut, folds, is_foretold, shrink
 from tumblers.diagnosis.simulator import Simulator
 
-from .lab import UPWARDS, measure, plan
+from .lab import UPWARDS, measure, plan, without
 
 
 def fitter_of(trials: int) -> Fitter:
@@ -30,13 +31,15 @@ def wrong_by(fitter: Fitter, sigmas: Sequence[float]) -> HeldOut:
     return HeldOut((residual,) * len(sigmas), (None,) * len(sigmas))
 
 
-def foretold(nominal: Sequence[float], chosen: Sequence[float]) -> bool:
+def foretold(nominal: Sequence[float], chosen: Sequence[float], fitted: Sequence[float] | None = None) -> bool:
     fitter = fitter_of(len(nominal))
     before, after = wrong_by(fitter, nominal), wrong_by(fitter, chosen)
     gap = shrink(fitter, before, after)
     # None of it is beyond where the loss is square.
     assert gap.after**2 == pytest.approx(np.mean(np.square(chosen)))
-    return is_foretold(fitter, before, after, gap)
+    # Where it is fitted it is right, if nothing else is said.
+    best = wrong_by(fitter, fitted if fitted is not None else [0.0] * len(nominal)).residuals[0]
+    return is_foretold(fitter, before, after, gap, Contender(("an_effect",), None, best, 0.0))
 
 
 @pytest.mark.parametrize(("size", "expected"), [(0.9, True), (1.2, True), (1.25, False), (3.9, False)])
@@ -58,6 +61,19 @@ def test_one_trial_that_nothing_could_foretell_does_not_speak_against_what_foret
     assert sum(np.square(chosen)) > 1.02 * sum(np.square(nominal))
     assert foretold(nominal, chosen)
     assert not foretold(nominal, [2.0, 2.0, 3.9])
+
+
+def test_what_a_single_track_shows_is_not_foretold_by_others_in_which_nothing_happens() -> None:
+    # Left out, the track is as far off as before; the others, in which nothing happens, cannot speak against it.
+    assert not foretold([3.9, 0.5, 0.5], [3.9, 0.5, 0.5], fitted=[0.5, 0.5, 0.5])
+    assert foretold([3.9, 3.9, 0.5], [3.9, 3.9, 0.5], fitted=[0.5, 0.5, 0.5])
+
+
+def test_a_trial_without_numbers_is_not_left_out() -> None:
+    dataset = measure(plan([(name, UPWARDS, 0.0) for name in ("a", "b", "c")], duration_s=0.1))
+    dataset = without(dataset, "b", slice(0, None))
+    fitter = Fitter(Comparison(dataset, Simulator(dataset, 1)))
+    assert sorted(i for fold in folds(fitter) for i in fold) == [0, 2]
 
 
 @pytest.mark.parametrize("size", [0.1, 3.0])

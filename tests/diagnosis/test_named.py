@@ -12,6 +12,7 @@ from tumblers import Scenario, simulate
 from tumblers.dataset import Dataset
 from tumblers.diagnosis import Diagnosis, diagnose
 from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.fit import Fitter
 from tumblers.diagnosis.loss import robust_cost
 from tumblers.diagnosis.pose import Path
 from tumblers.diagnosis.simulator import Simulator
@@ -136,6 +137,7 @@ def test_the_pasted_effect_gives_the_gap_that_the_report_states(dragged: Diagnos
                 contact_mode=run["contact_mode"].values,
             )
         )
+    Fitter(comparison).take_likeliest_noise(dragged.chosen)
     values = comparison.residual(paths).over(range(len(paths)))
     gap = np.sqrt(robust_cost(values) / comparison.count)
     # A fit looks at every fourth row or so of a run.

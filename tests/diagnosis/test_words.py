@@ -33,7 +33,11 @@ def test_the_verdict_is_one_sentence_a_student_understands() -> None:
         "No gap: the nominal model explains the data to within noise (1.0 σ, noise alone gives 1.0 σ)."
     )
     assert headline(made(verdict="unexplained", effects=(), chosen=())).startswith("Unexplained: the gap is 16.2 σ")
-    partial = headline(made(verdict="unexplained"))
+    closing = headline(made(verdict="unexplained"))
+    assert "It would close, to 1.0 σ, if the robot is pulled along +y" in closing
+    assert "too few trials show it" in closing
+    wide = tuple(replace(hypothesis, gap=3.0) for hypothesis in made().ranking)
+    partial = headline(made(verdict="unexplained", ranking=wide))
     assert "The best partial cause is that the robot is pulled along +y" in partial
     assert "with it, 1.1 σ are left" in partial
 

@@ -8,10 +8,10 @@ c = max(1, cost of the best / number of measurements) n_c
 ```
 
 with Σ the noise around each hypothesis and the prior u ~ N(0, σ_u² 1) on parameters in units of their range.
-Neighbouring frames and channels share what the model itself gets wrong, so that n_c of them count as one; and where
-even the best hypothesis leaves more than noise, everything that is concluded is widened by that (a quasi-likelihood;
-McCullagh and Nelder 1989, 9.2). Outcomes are few and count each for one. A small share of the probability belongs to
-all hypotheses alike.
+Neighbouring frames share what the model itself gets wrong, so that n_c numbers count as one (`Comparison.alike`); and
+where even the best hypothesis leaves more than noise, everything that is concluded is widened by that (a
+quasi-likelihood; McCullagh and Nelder 1989, 9.2). Outcomes are few and count each for one. A small share of the
+probability belongs to all hypotheses alike.
 """
 
 from __future__ import annotations
@@ -24,13 +24,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..effects.base import Effect
+from ..progress import OnPhase
 from .comparison import Comparison
 from .contender import Contender, of_fit, of_nominal
 from .fit import Fitter
 from .hypothesis import PRIOR_SIGMA
 from .loss import robust_cost
 from .predictive import is_right
-from .search import OnPhase, Search
+from .search import Search
+from .tolerated import is_tolerated
 
 __all__ = ["LAPSE", "Attribution", "attribute"]
 
@@ -43,8 +45,6 @@ _PRIOR = {0: 0.4, 1: 0.45, 2: 0.15}
 LAPSE = 0.06
 # Trial points of the last fit of the best, from where it is: intervals are no better than it.
 _LAST_POINTS = 12
-# So many neighbouring numbers of a track count as one.
-_ALIKE = 8.0
 # Of equals the one with fewer parameters is preferred, then the one that the catalogue lists first.
 _PER_PARAMETER, _PER_PLACE = 0.15, 0.005
 
@@ -104,10 +104,28 @@ def attribute(
     right = is_right(comparison, of_nominal(fitter).residual)
     contenders = search.contenders()
     ranked, dispersion = _ranked(contenders, comparison, search.names)
-    # From here on all are seen against one noise, around the nominal model and around the best.
-    comparison.take_noise_of(*dict.fromkeys([(), ranked[0].effects]))
+    if right:
+        ranked = _with_tolerated(ranked, comparison)
+    # From here on all are seen against one noise: that around the best, as much of it as the best needs.
+    fitter.take_likeliest_noise(ranked[0].effects)
     seen = [_seen(fitter, contender, first=k == 0) for k, contender in enumerate(ranked)]
     return Attribution(tuple(seen), dispersion, right)
+
+
+def _with_tolerated(ranked: Sequence[Contender], comparison: Comparison) -> list[Contender]:
+    """Count what only says that nominal numbers are off within their tolerances as the nominal model."""
+    scenarios = [comparison.simulator.nominal(i) for i in range(len(comparison.readers))]
+    same = [c for c in ranked if not c.names or is_tolerated(c.effects, scenarios)]
+    probability, evidence = sum(c.probability for c in same), max(c.log_evidence for c in same)
+    made = [
+        c
+        if all(c is not other for other in same)
+        else replace(c, probability=0.0)
+        if c.names
+        else replace(c, probability=probability, log_evidence=evidence)
+        for c in ranked
+    ]
+    return sorted(made, key=lambda c: (-c.log_evidence, len(c.names)))
 
 
 def _seen(fitter: Fitter, contender: Contender, first: bool) -> Contender:
@@ -125,7 +143,7 @@ def _ranked(
     contenders: Sequence[Contender], comparison: Comparison, effects: Sequence[str]
 ) -> tuple[list[Contender], float]:
     noted = [len(floor.outcome_scale) for floor in comparison.floors]
-    alike = _ALIKE if comparison.count > sum(noted) else 1.0
+    alike = comparison.alike
     dispersion = alike * max(1.0, min(contender.cost for contender in contenders) / comparison.count)
     listed = max(len(effects), 1)
     prior = {

@@ -42,6 +42,8 @@ _OUTLIER = 6.0
 _MOST_OFF = 3.0
 # A trial's track whose mean square is beyond this counts by its logarithm.
 FAR = 3.0
+# What the model itself gets wrong lasts about so long, and joins so many neighbouring numbers of a track at most.
+_ALIKE_S, _MOST_ALIKE = 0.1, 8.0
 # What a trial counts that the model cannot run at all, in sigmas.
 _NOT_RUN = 30.0
 # A tolerance is two standard deviations; a clock's offset is uniform within it.
@@ -113,7 +115,9 @@ class Comparison:
         self._bounds, self.local_sigmas = self._tolerances()
         sensor = dataset.sensor
         camera = np.array([radians(sensor.heading_tolerance_deg), sensor.scale_tolerance])
-        self._shared_bounds = np.concatenate([camera, np.full(SHARED, _MOST_OFF)])
+        # A step is no coarser than the longest, and no finer than ours.
+        most = np.concatenate([camera, np.full(SHARED - 1, _MOST_OFF)])
+        self._shared_low, self._shared_high = np.append(-most, 0.0), np.append(most, 1.0)
         self.shared_sigmas = np.concatenate([np.maximum(_CAMERA_SIGMA * camera, 1e-12), np.ones(SHARED)])
 
     def _start(self) -> None:
@@ -171,6 +175,16 @@ class Comparison:
     def count(self) -> int:
         """Number of numbers that were measured."""
         return sum(self.sizes)
+
+    @property
+    def alike(self) -> float:
+        """How many neighbouring numbers of the tracks count as one: those of a tenth of a second, up to eight."""
+        tracked = [i for i, reader in enumerate(self.readers) if len(reader.observed.time_s)]
+        if not tracked:
+            return 1.0
+        intervals = [self.readers[i].observed.frame_interval_s for i in tracked]
+        found = [min(max(_ALIKE_S / interval, 1.0), _MOST_ALIKE) if interval > 0.0 else 1.0 for interval in intervals]
+        return float(np.average(found, weights=[max(self.sizes[i], 1) for i in tracked]))
 
     @property
     def sizes(self) -> tuple[int, ...]:
@@ -349,7 +363,7 @@ class Comparison:
                 normal += g.T @ g - by_shared.T @ inverse @ by_shared
                 right -= g.T @ r - by_shared.T @ inverse @ own
         change = np.linalg.solve(normal, right)
-        shared = np.clip(shared + change, -self._shared_bounds, self._shared_bounds)
+        shared = np.clip(shared + change, self._shared_low, self._shared_high)
         local = local.copy()
         for i, (inverse, by_shared, own) in blocks.items():
             local[i] = np.clip(local[i] - inverse @ (own + by_shared @ change), -self._bounds[i], self._bounds[i])

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from time import perf_counter
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..check import thread_count
 from ..dataset import Dataset
 from ..effects.base import Effect
 from ..effects.catalogue import CATALOGUE, get
 from ..errors import InputError, show
+from ..progress import OnPhase, phases
 from ..version import __version__
 from .attribute import LAPSE, Attribution, attribute
 from .comparison import Comparison
@@ -27,19 +28,18 @@ from .loss import robust_cost
 from .next_trial import next_trials
 from .overlay import overlays
 from .result import EffectEstimate, HeatMap, Interval, NextTrial, RankedHypothesis, Region, TrialFloor
-from .search import OnPhase
 from .simulator import Job, Simulator
 from .verdict import judge, ties
 from .wrench import missing_wrench, wrench_regions
 
-__all__ = ["OnPhase", "diagnose"]
+__all__ = ["diagnose"]
 
 Floats = NDArray[np.float64]
 
 # Hypotheses whose gap is measured on trials left out, and how probable they must be (the best is always measured).
 _MEASURED, _PROBABLE = 3, 0.02
 # Rivals that a next trial is sought for, and draws of each.
-_RIVALS, _SAMPLES = 6, 4
+_RIVALS, _SAMPLES = 6, 32
 # ln of the odds against an effect that is ruled out.
 _RULED_OUT = 4.6
 
@@ -80,16 +80,25 @@ def diagnose(
     SimulationError
         The native module gave up.
     """
+    if not isinstance(dataset, Dataset):
+        raise InputError("dataset", show(dataset), "a Dataset, as tumblers.dataset.load returns it")
     kinds = _kinds(effects)
-    if jobs is not None and (isinstance(jobs, bool) or not isinstance(jobs, int) or jobs < 1):
-        raise InputError("jobs", show(jobs), "a whole number of at least 1")
+    if jobs is not None:
+        thread_count("jobs", jobs)
+    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
+        raise InputError("seed", show(seed), "a whole number of at least 0")
     start = perf_counter()
-    with _telling(progress) as tell:
+    with phases(progress) as tell:
         tell("simulating the nominal model", 0, 1)
         simulator = Simulator(dataset, jobs or 0)
         comparison = Comparison(dataset, simulator)
         if comparison.count == 0:
-            raise InputError("trial", "no measurement in any trial: every frame is lost", "at least one measurement")
+            raise InputError(
+                "trial",
+                "no measurement in any trial: every frame is lost",
+                "at least one measurement",
+                dataset.directory,
+            )
         attribution = attribute(comparison, kinds, tell, seed)
         return _Conclusion(comparison, attribution, seed, tell).diagnosis(start)
 
@@ -118,7 +127,7 @@ class _Conclusion:
             self.held_out(contender)
         best = attribution.contenders[0]
         gap = shrink(self.fitter, nominal, self.held_out(best), self.seed)
-        foretold = is_foretold(self.fitter, nominal, self.held_out(best), gap)
+        foretold = is_foretold(self.fitter, nominal, self.held_out(best), gap, best)
         verdict, chosen = judge(comparison, attribution, foretold)
         if chosen is not best:
             gap = shrink(self.fitter, nominal, nominal, self.seed)
@@ -204,7 +213,6 @@ class _Conclusion:
     def _next(self, chosen: Contender, tied: dict[str, tuple[str, ...]], tell: OnPhase) -> tuple[NextTrial, ...]:
         if not any(tied.values()):
             return ()
-        tell("the next trial", 0, 1)
         rivals = [chosen]
         for contender in self.attribution.contenders:
             for name, others in tied.items():
@@ -212,8 +220,13 @@ class _Conclusion:
                 rival = any(set(contender.names) == swapped | {other} for other in others)
                 if rival and contender not in rivals and contender.probability > _PROBABLE:
                     rivals.append(contender)
-        hypotheses = [(c.names, samples(self.attribution, c, _SAMPLES, self.seed)) for c in rivals[:_RIVALS]]
-        weights = [contender.probability for contender in rivals[:_RIVALS]]
+        rivals = rivals[:_RIVALS]
+        hypotheses = []
+        for k, contender in enumerate(rivals):
+            tell("the next trial", k, len(rivals) + 1)
+            hypotheses.append((contender.names, samples(self.fitter, self.attribution, contender, _SAMPLES, self.seed)))
+        tell("the next trial", len(rivals), len(rivals) + 1)
+        weights = [contender.probability for contender in rivals]
         return next_trials(self.comparison.dataset, self.comparison.simulator, hypotheses, self.seed, weights)
 
     def _ruled_out(self, chosen: Contender, tied: dict[str, tuple[str, ...]]) -> dict[str, str]:
@@ -259,6 +272,7 @@ def _kinds(effects: Sequence[str] | None) -> list[type[Effect]]:
 
 def _assumptions(comparison: Comparison, attribution: Attribution) -> tuple[str, ...]:
     simulator, sensor = comparison.simulator, comparison.dataset.sensor
+    tried = sorted(c.names[0] for c in attribution.contenders if len(c.names) == 1)
     clock = "half a frame" if sensor.time_offset_s is None else f"{1e3 * sensor.time_offset_s:g} ms"
     nominal = ", ".join(f"{name} {100.0 * share:g} %" for name, share in TOLERANCES.items())
     given = "magnetic_torque" in comparison.dataset.model_given
@@ -278,9 +292,10 @@ def _assumptions(comparison: Comparison, attribution: Attribution) -> tuple[str,
         "A trial that a hypothesis cannot follow at all counts by its logarithm.",
         "In a trial left out, the sensor's nuisances and the nominal numbers are still fitted; effects are not.",
         f"Every {attribution.dispersion:.3g} measured numbers count as one in probabilities and intervals.",
+        f"Tried were {', '.join(tried)}." if tried else "No effect that was tried can be at work in these trials.",
         f"However strong the evidence, {100.0 * LAPSE:.0f} % of the probability belongs to all hypotheses alike.",
         "Before anything is fitted, 40 % for no gap, 45 % for one effect, 15 % for two; no more than two are tried.",
-        "Evidence is Laplace's approximation; intervals are 90 % profiles.",
+        "Evidence is Laplace's approximation; intervals are 90 % likelihood ratios along the ridge of the posterior.",
     ]
     tracks = [trial.track for trial in comparison.dataset.trials if trial.track is not None]
     if any(
@@ -296,21 +311,3 @@ def _assumptions(comparison: Comparison, attribution: Attribution) -> tuple[str,
             "With a single trial no trial can be left out: the gap is that of the fit itself, and proves nothing."
         )
     return tuple(said)
-
-
-@contextmanager
-def _telling(progress: bool | OnPhase) -> Iterator[OnPhase]:
-    if callable(progress):
-        yield progress
-        return
-    if not progress:
-        yield lambda _phase, _done, _total: None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
-
-    console = Console(stderr=True)
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
-        task = bar.add_task("", total=1)
-        yield lambda phase, done, total: bar.update(task, description=phase, completed=done, total=total)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
+from math import isfinite
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +15,7 @@ import numpy as np
 from ..atomic import write_files
 from ..dataset import Dataset
 from ..effects.base import Effect
+from ..effects.catalogue import file_of
 from ..model import Model
 from ..scenario import Scenario
 from ..section import write_entry
@@ -34,9 +36,11 @@ from .result import (
 if TYPE_CHECKING:
     from .plots import Figures
 
-__all__ = ["FORMAT", "Diagnosis"]
+__all__ = ["FILES", "FORMAT", "Diagnosis"]
 
 FORMAT = "tumblers-diagnosis/1"
+# What `Diagnosis.save` writes.
+FILES = ("diagnosis.json", "effects.toml", "scenario.toml", "report.html")
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,8 +124,36 @@ class Diagnosis:
         return Figures(self)
 
     def effects_toml(self) -> str:
-        """Return the chosen effects as ``[[effect]]`` tables, to be pasted into a scenario."""
-        return "\n".join(write_entry("effect", effect.to_table()) for effect in self.chosen)
+        """Return the chosen effects as ``[[effect]]`` tables, to be pasted into a scenario; empty if there are none."""
+        if not self.chosen:
+            return ""
+        steps = sorted({floor.step_s for floor in self.floors})
+        span = " to ".join(f"{step:g}" for step in ([steps[0], steps[-1]] if len(steps) > 1 else steps))
+        head = [
+            "# To be pasted into a scenario. They were found with:",
+            *(f'# [model] {f.name} = "{getattr(self.model, f.name)}"' for f in fields(self.model)),
+            f"# [run] step_s = {span}",
+            *self._files_needed(),
+        ]
+        tables = (write_entry("effect", effect.to_table()) for effect in self.chosen)
+        return "\n".join([*head, "", "\n".join(tables)])
+
+    def scenario_toml(self) -> str:
+        """Return the scenario of the trial with the largest gap, with the diagnosed effects: a whole one, to be run."""
+        gaps = {trial.id: self.gap.by_trial.get(trial.id, (0.0,))[0] for trial in self.dataset.trials}
+        trial = max(gaps, key=lambda id_: gaps[id_] if isfinite(gaps[id_]) else 0.0)
+        head = [f"# Trial {trial}, as it was diagnosed.", *self._files_needed()]
+        return "\n".join([*head, "", self.scenario(trial).to_toml()])
+
+    def _files_needed(self) -> list[str]:
+        lines = []
+        for effect in self.chosen:
+            kind, file = type(effect), file_of(type(effect))
+            if file is not None:
+                lines.append(f"# {effect.name} is not of the package: tumblers simulate --effects {file.name} ...")
+            elif kind.__module__.partition(".")[0] != __package__.partition(".")[0]:
+                lines.append(f"# {effect.name} is not of the package: register {kind.__qualname__} before.")
+        return lines
 
     def to_json(self) -> str:
         """Return the diagnosis as ``tumblers-diagnosis/1``."""
@@ -196,7 +228,7 @@ class Diagnosis:
         return json.dumps(_plain(table), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
     def save(self, directory: str | PathLike[str]) -> None:
-        """Write ``diagnosis.json``, ``effects.toml`` and ``report.html`` into a folder, all or none.
+        """Write `FILES` into a folder, all or none.
 
         Parameters
         ----------
@@ -210,16 +242,12 @@ class Diagnosis:
         """
         from .report import report_html
 
-        contents = {
-            "diagnosis.json": self.to_json().encode(),
-            "effects.toml": self.effects_toml().encode(),
-            "report.html": report_html(self).encode(),
-        }
+        texts = (self.to_json(), self.effects_toml(), self.scenario_toml(), report_html(self))
         folder = Path(directory)
         new = not folder.exists()
         folder.mkdir(exist_ok=True)
         try:
-            write_files({folder / name: data for name, data in contents.items()})
+            write_files({folder / name: text.encode() for name, text in zip(FILES, texts, strict=True)})
         except BaseException:
             if new:
                 folder.rmdir()

@@ -150,7 +150,9 @@ class Fitter:
         far = FAR * max(track, 1)
         return far * float(np.log1p(robust_cost(values[:track]) / far)) + robust_cost(values[track:])
 
-    def take_likeliest_noise(self, effects: tuple[Effect, ...]) -> tuple[float, ...]:
+    def take_likeliest_noise(
+        self, effects: tuple[Effect, ...], around: tuple[Effect, ...] | None = None
+    ) -> tuple[float, ...]:
         """Take the noise around a hypothesis, in each trial as much of it as makes the differences likeliest.
 
         What halving the step or moving a nominal number changes bounds what may be wrong; how much is, the data know.
@@ -159,6 +161,8 @@ class Fitter:
         ----------
         effects
             The hypothesis; none for the nominal model.
+        around
+            The hypothesis around which the noise is measured; the same if None.
 
         Returns
         -------
@@ -166,10 +170,11 @@ class Fitter:
             By trial, how much of it is taken.
         """
         comparison = self.comparison
+        around = effects if around is None else around
         paths = comparison.simulator.run([Job(i, effects) for i in self.trials])
         known = []
         for share in _SHARES:
-            comparison.take_noise_of(effects, shares=[share] * len(self.trials))
+            comparison.take_noise_of(around, shares=[share] * len(self.trials))
             known.append(comparison.floors)
 
         def likeliest(mixed: Residual | None) -> tuple[float, ...]:
@@ -184,14 +189,14 @@ class Fitter:
         shares = best = likeliest(None)
         least = inf
         for _ in range(_MIXED):
-            comparison.take_noise_of(effects, shares=shares)
+            comparison.take_noise_of(around, shares=shares)
             mixed = comparison.residual(paths)
             total = self.cost(mixed, np.zeros(1)) + comparison.log_determinant
             if total >= least:
                 break
             best, least = shares, total
             shares = likeliest(mixed)
-        comparison.take_noise_of(effects, shares=best)
+        comparison.take_noise_of(around, shares=best)
         return best
 
     def _weights(self, residual: Residual, chosen: Sequence[int]) -> Floats:

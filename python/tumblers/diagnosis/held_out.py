@@ -31,6 +31,8 @@ _EVALUATIONS = 3
 _RESAMPLES = 400
 # A right model's mean square on trials that no fit has seen, and how much worse than nominal it may be there.
 _FORETOLD, _NO_WORSE = 1.5, 1.02
+# A track that holds more than this share of what speaks for an effect is its only witness.
+_ALONE = 0.95
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +64,8 @@ def folds(fitter: Fitter) -> list[tuple[int, ...]]:
         Of the dataset.
     """
     trials = fitter.comparison.dataset.trials
-    if len(trials) < 2:
+    measured = [i for i in fitter.trials if fitter.comparison.sizes[i]]
+    if len(measured) < 2:
         return []
 
     def condition(i: int) -> tuple[object, ...]:
@@ -71,7 +74,7 @@ def folds(fitter: Fitter) -> list[tuple[int, ...]]:
         strength = field.strength_T if isinstance(field, RotatingField | StaticField) else 0.0
         return field.kind, trials[i].incline_deg, rate, strength, i
 
-    order = sorted(range(len(trials)), key=condition)
+    order = sorted(measured, key=condition)
     count = min(_FOLDS, len(order))
     return [tuple(sorted(order[first::count])) for first in range(count)]
 
@@ -104,14 +107,20 @@ def held_out(fitter: Fitter, contender: Contender) -> HeldOut:
         residual = fitter.comparison.residual(paths)
         for i in left_out or fitter.trials:
             residuals[i], points[i] = residual, point
-    return HeldOut(tuple(residuals[i] for i in fitter.trials), tuple(points[i] for i in fitter.trials))
+    # A trial without numbers is no worse anywhere.
+    anywhere = next(iter(residuals))
+    return HeldOut(
+        tuple(residuals.get(i, residuals[anywhere]) for i in fitter.trials),
+        tuple(points.get(i, points[anywhere]) for i in fitter.trials),
+    )
 
 
-def is_foretold(fitter: Fitter, nominal: HeldOut, chosen: HeldOut, gap: Gap) -> bool:
+def is_foretold(fitter: Fitter, nominal: HeldOut, chosen: HeldOut, gap: Gap, best: Contender) -> bool:
     """Whether a hypothesis stands on trials that its fit had not seen; not so where no trial can be left out.
 
     Where the trial that shows the effect is left out, nothing can foretell it, and past a threshold a small error is a
     long way: then it is enough to be no worse than the nominal model in the objective, whose logarithm bounds a trial.
+    Not so where a single track holds all that speaks for the effect: nothing that was measured could speak against it.
 
     Parameters
     ----------
@@ -121,11 +130,20 @@ def is_foretold(fitter: Fitter, nominal: HeldOut, chosen: HeldOut, gap: Gap) -> 
         Of the nominal model and of the hypothesis.
     gap
         Of both.
+    best
+        The hypothesis, fitted to all trials.
     """
     if not gap.held_out_trials:
         return False
-    costs = [sum(fitter.trial_cost(r, i) for i, r in enumerate(each.residuals)) for each in (nominal, chosen)]
-    return gap.after**2 <= _FORETOLD or costs[1] <= _NO_WORSE * costs[0]
+    if gap.after**2 <= _FORETOLD:
+        return True
+    fitted = fitter.again(best.fit).residual if best.fit is not None else best.residual
+    before = [fitter.trial_cost(nominal.residuals[i], i) for i in fitter.trials]
+    gains = np.array([max(cost - fitter.trial_cost(fitted, i), 0.0) for i, cost in enumerate(before)])
+    most = int(np.argmax(gains))
+    alone = gains[most] > _ALONE * gains.sum() and len(fitter.comparison.readers[most].observed.time_s) > 0
+    after = sum(fitter.trial_cost(residual, i) for i, residual in enumerate(chosen.residuals))
+    return not alone and after <= _NO_WORSE * sum(before)
 
 
 def shrink(fitter: Fitter, nominal: HeldOut, chosen: HeldOut, seed: int = 0) -> Gap:
@@ -151,6 +169,7 @@ def shrink(fitter: Fitter, nominal: HeldOut, chosen: HeldOut, seed: int = 0) -> 
     low, high = np.quantile(_shrunk(drawn[0], drawn[2]), [0.05, 0.95])
     by_trial = np.sqrt(costs / np.maximum(sizes, 1.0))
     ids = [comparison.dataset.trials[i].id for i in counted]
+    left_out = [comparison.dataset.trials[i].id for fold in folds(fitter) for i in fold]
     estimate = float(_shrunk(np.array(before), np.array(after)))
     return Gap(
         noise_floor=NOISE_FLOOR,
@@ -158,7 +177,7 @@ def shrink(fitter: Fitter, nominal: HeldOut, chosen: HeldOut, seed: int = 0) -> 
         after_nuisance_only=float(nuisances),
         after=float(after),
         shrink=Interval(estimate, min(float(low), estimate), max(float(high), estimate)),
-        held_out_trials=tuple(ids) if folds(fitter) else (),
+        held_out_trials=tuple(name for name in ids if name in left_out),
         by_trial={name: (float(a), float(b), float(c)) for name, (a, b, c) in zip(ids, by_trial.T, strict=True)},
     )
 

@@ -7,7 +7,7 @@ ranges are halved, and many points over the whole range are fitted to the beginn
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations, pairwise
 
@@ -16,19 +16,19 @@ from numpy.typing import NDArray
 from scipy.stats import qmc
 
 from ..effects.base import Effect
+from ..progress import OnPhase
 from .contender import Contender, of_fit, of_nominal
 from .fit import Fit, Fitter
 from .hypothesis import Hypothesis
 from .predictive import is_right, mean_square
 
-__all__ = ["OnPhase", "Search"]
+__all__ = ["Search"]
 
 Floats = NDArray[np.float64]
-OnPhase = Callable[[str, int, int], None]
 
 # Fits that take so much off the objective are worth another look; less than so much off the nominal model's is not
-# worth any, for the prior and eight numbers that count as one ask for as much.
-_CLEAR, _WORTH = 20.0, 70.0
+# worth any, for the prior asks for as much (the latter times the numbers that count as one).
+_CLEAR, _WORTH = 20.0, 9.0
 # Trial points of a fit: of an effect that leads after the scan (so many do), and of another (where nothing is better
 # than neutral only the derivatives are taken); where a fit has only to follow another noise; of a pair, and where a
 # good fit is taken further.
@@ -80,6 +80,7 @@ class Search:
         scenarios = [self.comparison.simulator.nominal(i) for i in fitter.trials]
         possible = [Hypothesis.of(kind, scenarios) for kind in kinds]
         self.possible = [hypothesis for hypothesis in possible if len(hypothesis.starts)]
+        self.worth = _WORTH * self.comparison.alike
         # Points at which a threshold makes one trial right.
         self.hints: dict[tuple[str, ...], list[Floats]] = {}
 
@@ -93,7 +94,7 @@ class Search:
         self.fitter.take_likeliest_noise(())
         nominal = of_nominal(self.fitter)
         singles = self._singles(nominal)
-        if not singles or singles[0].total > nominal.total - _WORTH:
+        if not singles or singles[0].total > nominal.total - self.worth:
             return [nominal, *singles]
         if self.comparison.halve_steps_for(singles[0].effects):
             self.fitter.take_likeliest_noise(())
@@ -103,12 +104,12 @@ class Search:
         strong = not is_right(self.comparison, nominal.residual)
         if strong and self._is_wanting(singles[0]):
             singles = self._settled(self._far(singles))
-        if singles[0].total > nominal.total - _WORTH:
-            return [nominal, *self._each_by_itself(singles)]
+        if singles[0].total > nominal.total - self.worth:
+            return self._against_the_best(nominal, self._each_by_itself(singles))
         pairs = self._pairs(singles, strong)
         if pairs:
             singles = [self._nested(pairs[0], singles[0]), *singles[1:]]
-        return [nominal, *self._each_by_itself([*singles, *pairs])]
+        return self._against_the_best(nominal, self._each_by_itself([*singles, *pairs]))
 
     def _far(self, singles: Sequence[Contender]) -> list[Contender]:
         """Search far away for the best, and where they leave a gap for those that no local fit can be trusted with."""
@@ -248,6 +249,27 @@ class Search:
                 break
         return sorted(made, key=_total)
 
+    def _against_the_best(self, nominal: Contender, contenders: Sequence[Contender]) -> list[Contender]:
+        """Hold all that come near the best against its noise too, and keep what is likelier.
+
+        Near a threshold the noise around two hypotheses that say the same can differ by much. What is better than
+        another has to be so against one noise.
+        """
+        best = contenders[0]
+        made = [best]
+        for contender in (nominal, *contenders[1:]):
+            if contender.total <= best.total + _NEAR:
+                self.fitter.take_likeliest_noise(contender.effects, best.effects)
+                other = (
+                    of_nominal(self.fitter)
+                    if contender.fit is None
+                    else replace(of_fit(self.fitter, self.fitter.again(contender.fit)), settled=contender.settled)
+                )
+                made.append(min(contender, other, key=_total))
+            else:
+                made.append(contender)
+        return made
+
     def _against_itself(self, fit: Fit) -> Contender:
         """Hold a fit against its own noise."""
         self.fitter.take_likeliest_noise(fit.hypothesis.effects(fit.point))
@@ -328,7 +350,7 @@ class Search:
         if wanting:
             self._joined(singles, found)
         pairs = sorted(found.values(), key=_total)
-        if not pairs or pairs[0].total > singles[0].total - _WORTH:
+        if not pairs or pairs[0].total > singles[0].total - self.worth:
             return pairs
         pairs = self._settled(pairs)
         found = {frozenset(pair.names): pair for pair in pairs}

@@ -69,9 +69,16 @@ _OBSERVATIONS = {
     "drift_m_per_s": ("drift along x", "m/s"),
     "tilt_deg": ("tilt", "degrees"),
 }
+_EVENTS = {
+    "climbs": "climbs",
+    "slides_away": "slides away, too fast for a speed to be noted,",
+    "runs_away": "runs away, too fast for a speed to be noted,",
+}
 
 # Below this share of the gap an effect is not foretold by trials that were fitted without it.
 _FORETOLD = 0.05
+# A gap that is no more than so much of the noise is closed.
+_CLOSED = 1.2
 # Where less than this share of the gap is left once the sensor's nuisances are fitted, that is what effects are about.
 _SLIPS = 0.1
 
@@ -100,7 +107,8 @@ def headline(diagnosis: Diagnosis) -> str:
     gap = diagnosis.gap
     floor = f"noise alone gives {_sigmas(gap.noise_floor)}"
     if diagnosis.verdict == "no_gap":
-        return f"No gap: the nominal model explains the data to within noise ({_sigmas(gap.before)}, {floor})."
+        left = _sigmas(gap.after_nuisance_only)
+        return f"No gap: the nominal model explains the data to within noise ({left}, {floor})."
     phrases = [phrase_of(effect, diagnosis.dataset) for effect in diagnosis.effects]
     if diagnosis.verdict == "explained" and phrases:
         scope = _scope(diagnosis)
@@ -115,12 +123,22 @@ def headline(diagnosis: Diagnosis) -> str:
                 "others to foretell it."
             )
         return f"{causes}: {amounts}{together} {'explain' if len(phrases) > 1 else 'explains'} {_explained(gap)}."
+    tried = sum(len(hypothesis.effects) == 1 for hypothesis in diagnosis.ranking)
+    none = (
+        f"none of the {tried} effects that were tried closes it" if tried > 1 else "no effect that was tried closes it"
+    )
     left = f"the gap is {_sigmas(gap.before)} ({floor})"
     if not phrases:
-        return f"Unexplained: {left}, and no effect of the catalogue closes it."
+        return f"Unexplained: {left}, and {none}."
     partial = " and ".join(f"{phrase.cause}, {phrase.amount.rstrip(',')}" for phrase in phrases)
+    fitted = diagnosis.ranking[0].gap
+    if fitted < _CLOSED * gap.noise_floor:
+        return (
+            f"Unexplained: {left}. It would close, to {_sigmas(fitted)}, if {partial}; but too few trials show it to "
+            "hold that against another."
+        )
     return (
-        f"Unexplained: {left}, and no effect of the catalogue closes it. The best partial cause is that {partial}; "
+        f"Unexplained: {left}, and {none}. The best partial cause is that {partial}; "
         f"with it, {_sigmas(gap.after)} are left."
     )
 
@@ -144,8 +162,11 @@ def points(diagnosis: Diagnosis) -> tuple[tuple[str, str], ...]:
     said += [("ruled out", text) for text in _ruled_out(diagnosis)]
     if diagnosis.next_trials:
         first, *others = diagnosis.next_trials
-        said.append(("next trial", _next(first)))
-        telling = [t for t in others if t.information_bits > _MUCH_MORE * first.information_bits]
+        nothing = "" if first.within_ranges else "none like those done so far tells them apart; beyond them "
+        said.append(("next trial", nothing + _next(first)))
+        telling = [
+            t for t in others if not t.within_ranges and t.information_bits > _MUCH_MORE * first.information_bits
+        ]
         # Beyond the ranges of the lab only where that is worth the trouble.
         said += [("or, beyond", f"what was done so far: {_next(other)}") for other in telling[:1]]
     said += [("caution", text) for text in cautions(diagnosis)]
@@ -181,8 +202,8 @@ def reason_words(why: str) -> str:
 
 def observation_words(kind: str, mean: float, sigma: float) -> str:
     """Return what would be seen of a trial in words: ``mean speed 1.2 ± 0.1 mm/s``."""
-    if kind == "climbs":
-        return f"climbs with {percent(mean)} probability"
+    if kind in _EVENTS:
+        return f"{_EVENTS[kind]} with {percent(mean)} probability"
     name, unit = _OBSERVATIONS.get(kind, (kind.replace("_", " "), ""))
     return f"{name} {with_sigma(mean, sigma, unit)}"
 
@@ -298,7 +319,9 @@ def _how_far(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "no_gap":
         return f"{held_out}{_sigmas(gap.before)} ({refitted}; noise alone: {_sigmas(gap.noise_floor)})."
     shrink = gap.shrink
-    if isfinite(shrink.estimate):
+    if not count:
+        held_out = "in the fit itself, for no trial could be left out: "
+    if count and isfinite(shrink.estimate):
         share = f"; the gap shrinks by {percent(shrink.estimate)}"
         if isfinite(shrink.low) and isfinite(shrink.high):
             share += f" (90 % interval {100.0 * shrink.low:.0f} to {percent(shrink.high)})"
