@@ -27,6 +27,10 @@ if TYPE_CHECKING:
     from . import blind
     from .diagnosis.diagnose import diagnose
     from .diagnosis.diagnosis import Diagnosis
+    from .studies.climb import climb
+    from .studies.convergence import convergence
+    from .studies.design import design
+    from .studies.tolerance import tolerance
 
 __all__ = [
     "DRIVES",
@@ -61,7 +65,10 @@ __all__ = [
     "TumblersError",
     "__version__",
     "blind",
+    "climb",
+    "convergence",
     "dataset",
+    "design",
     "diagnose",
     "drive",
     "effects",
@@ -72,10 +79,13 @@ __all__ = [
     "save_netcdf",
     "simulate",
     "sweep",
+    "tolerance",
 ]
 
 # SciPy comes with a diagnosis: it waits until its own names are asked for.
 _OF_THE_DIAGNOSIS = ("Diagnosis", "diagnose")
+# Each is named as its module.
+_OF_THE_STUDIES = ("climb", "convergence", "design", "tolerance")
 
 
 def __getattr__(name: str) -> object:
@@ -83,4 +93,6 @@ def __getattr__(name: str) -> object:
         return import_module(".blind", __package__)
     if name in _OF_THE_DIAGNOSIS:
         return getattr(import_module(".diagnosis", __package__), name)
+    if name in _OF_THE_STUDIES:
+        return getattr(import_module(f".studies.{name}", __package__), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
