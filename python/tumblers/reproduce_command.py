@@ -1,0 +1,64 @@
+"""The command ``tumblers reproduce``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from time import perf_counter
+from typing import Annotated
+
+import typer
+
+from .diagnose_command import _check_folder
+from .errors import InputError
+from .options import numbers, output_file
+
+__all__ = ["reproduce"]
+
+
+def reproduce(
+    out: Annotated[
+        Path, typer.Option("--out", help="Folder for reproduction.json, index.html, figures and data; made if missing.")
+    ],
+    only: Annotated[
+        str | None, typer.Option(metavar="NUMBERS", help="Results to run, 2,7 or 1:4; all ten without it.")
+    ] = None,
+    jobs: Annotated[int | None, typer.Option(help="Threads; all by default. The result does not depend on it.")] = None,
+    page: Annotated[Path | None, typer.Option("--page", help="All rows as a page in Markdown (.md).")] = None,
+) -> None:
+    """Run every result of the paper and set our numbers beside the paper's, with a verdict and a tested reason.
+
+    \b
+    Examples:
+      tumblers reproduce --out reproduction
+      tumblers reproduce --only 2,7 --out reproduction
+      tumblers reproduce --out reproduction --page docs/reproduction.md
+    """  # noqa: D301 - \b keeps the lines of an example apart
+    _check_folder(out)
+    if page is not None:
+        output_file("--page", page, (".md",), [])
+        if only is not None:
+            raise InputError("--page", "it beside --only", "it with all results")
+    if jobs is not None and jobs < 1:
+        raise InputError("--jobs", str(jobs), "a whole number of at least 1")
+    chosen = None if only is None else _chosen(only)
+    from .reproduction.reproduce import reproduce as run
+    from .reproduction.terminal import print_counts
+
+    start = perf_counter()
+    reproduction = run(chosen, jobs=jobs, progress=True)
+    reproduction.save(out, page)
+    print_counts(reproduction)
+    typer.echo(f"\npage: {out / 'index.html'}\ntime: {perf_counter() - start:.1f} s")
+
+
+def _chosen(text: str) -> list[int]:
+    from .reproduction.reproduce import NUMBERS
+
+    expected = f"numbers of results from {NUMBERS[0]} to {NUMBERS[-1]}, such as 2,7 or 1:4"
+    try:
+        found = numbers("--only", text)
+    except InputError:
+        raise InputError("--only", repr(text), expected) from None
+    if any(number not in NUMBERS for number in found):
+        raise InputError("--only", repr(text), expected)
+    return [int(number) for number in found]

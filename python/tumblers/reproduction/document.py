@@ -1,0 +1,101 @@
+"""The rows as a page in Markdown."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from .examine import Examined
+from .reproduction import Reproduction
+from .row import shown
+from .words import HEADS, Counts, choice_words
+
+__all__ = ["document", "introduction", "section", "table"]
+
+_HEADS = ("robot", "quantity", "set", "paper", "ours", "tolerance", "verdict")
+
+
+def document(reproduction: Reproduction) -> str:
+    """Return the page ``reproduction.md``.
+
+    Parameters
+    ----------
+    reproduction
+        What was run.
+    """
+    parts = [introduction(), Counts.of(reproduction.rows).words, _counts(reproduction)]
+    parts += [section(one) for one in reproduction.examined]
+    return "\n\n".join(parts) + "\n"
+
+
+def introduction() -> str:
+    """Return what the page says before the numbers."""
+    return "\n\n".join(
+        (
+            "# The paper's results, and ours",
+            "Written by `tumblers reproduce --out DIR --page docs/reproduction.md`: every number and statement of the "
+            "paper's results, ours beside it, and where they part, what a change of one choice makes of it. A "
+            "tolerance and its reason were written down before the runs; none is fitted to them.",
+            "A set says whose numbers of the substrate a row was run with, the `text`'s or the `released` code's, and, "
+            "where a draft is involved, by which formula: `geometric` is what is drawn, `as_released` what the "
+            "released code computes. PDMS on aluminium has numbers in the released code only; there the set `text` "
+            f"takes the text's only table for aluminium, that of SU-8. All else is {choice_words()}.",
+            "A row that differs is run again with one choice changed, each in turn. With two dozen choices some will "
+            "meet a number by chance: beside each that does stands how many rows of the same result and set then "
+            "match. A choice that mends one row and spoils as many others is not counted as its explanation.",
+        )
+    )
+
+
+def section(one: Examined) -> str:
+    """Return a result's part of the page: its table, its tolerances, and why rows differ.
+
+    Parameters
+    ----------
+    one
+        The result.
+    """
+    parts = [table(one)]
+    found = [
+        f"- {row.claim.robot}, {row.claim.quantity} ({row.set_name}): {row.why}." for row in one.rows if row.trials
+    ]
+    if found:
+        parts += ["Why rows differ:", "\n".join(found)]
+    return "\n\n".join(parts)
+
+
+def table(one: Examined) -> str:
+    """Return a result's heading, rows and tolerances, which no suspect changes.
+
+    Parameters
+    ----------
+    one
+        The result.
+    """
+    rows = [
+        (
+            row.claim.robot,
+            row.claim.quantity,
+            row.set_name,
+            shown(row.claim.paper),
+            shown(row.ours),
+            row.claim.tolerance.words,
+            row.verdict,
+        )
+        for row in one.rows
+    ]
+    return "\n\n".join((f"## {one.result.number}. {one.result.title}", _table(_HEADS, rows), _tolerances(one)))
+
+
+def _tolerances(one: Examined) -> str:
+    found = dict.fromkeys((claim.tolerance.words, claim.tolerance.reason) for claim in one.result.claims)
+    return "Tolerances: " + "; ".join(f"{words}: {reason}" for words, reason in found) + "."
+
+
+def _counts(reproduction: Reproduction) -> str:
+    lines = [(str(one.result.number), one.result.title, *Counts.of(one.rows).cells()) for one in reproduction.examined]
+    return _table(("", "result", *HEADS), lines)
+
+
+def _table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    lines = [heads, ["---"] * len(heads), *rows]
+    return "\n".join(f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in line)} |" for line in lines)
