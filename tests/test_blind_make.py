@@ -37,7 +37,17 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_the_files_do_not_depend_on_the_number_of_processes(made: Path, tmp_path: Path) -> None:
     make(tmp_path / "again", seed=SEED, count=2, jobs=1)
-    assert contents(tmp_path / "again") == contents(made)
+    first, again = contents(made), contents(tmp_path / "again")
+    tables = [json.loads(files.pop("answers.json"))["answers"] for files in (first, again)]
+    seals = [[files.pop(name) for name in sorted(files) if name.endswith("seal.json")] for files in (first, again)]
+    assert again == first
+    truths = [[(entry["dataset"], entry["answer"]) for entry in table] for table in tables]
+    assert truths[0] == truths[1]
+    # Whoever knows the seed knows no salt, and so opens no seal.
+    salts = {entry["salt"] for table in tables for entry in table}
+    assert len(salts) == 4
+    assert all(len(salt) == 32 for salt in salts)
+    assert not set(seals[0]) & set(seals[1])
 
 
 def test_a_set_loads_and_keeps_its_answers_apart(made: Path) -> None:
@@ -76,6 +86,7 @@ def test_a_seal_does_not_depend_on_the_order_of_keys() -> None:
         ({"seed": True}, "seed"),
         ({"count": 0}, "count"),
         ({"jobs": 0}, "jobs"),
+        ({"jobs": 100_000}, "jobs"),
     ],
 )
 def test_refused_numbers_write_nothing(changes: dict[str, int], key: str, tmp_path: Path) -> None:
@@ -92,6 +103,11 @@ def test_a_folder_that_is_taken_is_refused(made: Path, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError, match="expected a folder"):
         make(tmp_path / "file", seed=1, count=1)
+    with pytest.raises(
+        InputError, match=r"^out: found '.*/a/b', expected a folder in one that exists, '.*/a' does not"
+    ):
+        make(tmp_path / "a" / "b", seed=1, count=1)
+    assert not (tmp_path / "a").exists()
 
 
 def test_an_interrupted_make_leaves_nothing(tmp_path: Path) -> None:
@@ -146,6 +162,8 @@ def test_the_command_refuses_in_one_line(made: Path) -> None:
     assert str(done.exception) == "--count: found 0, expected a whole number of at least 1"
     done = CliRunner().invoke(blind_app, ["run", str(made / "none")])
     assert isinstance(done.exception, InputError)
+    done = CliRunner().invoke(blind_app, ["run", str(made), "--jobs", "0"])
+    assert str(done.exception) == "--jobs: found 0, expected a whole number of at least 1 and at most 1024"
     done = CliRunner().invoke(blind_app, ["run", str(made), "--only", "7"])
     assert str(done.exception).startswith("--only: found 7, expected numbers of datasets in")
     done = CliRunner().invoke(blind_app, ["score", str(made), "--answers", str(made / "dataset-000" / "seal.json")])

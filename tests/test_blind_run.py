@@ -101,8 +101,10 @@ def test_another_version_or_a_failure_is_not_done(diagnose: list[object], tmp_pa
 
 
 def test_no_thread_is_refused_before_anything_is_diagnosed(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="threads: found 0, expected at least 1"):
-        run(tmp_path, threads=0)
+    for wrong in ({"threads": 0}, {"jobs": 0}, {"jobs": 1025}):
+        ((key, value),) = wrong.items()
+        with pytest.raises(InputError, match=f"^{key}: found {value}, expected a whole number of at least 1"):
+            run(tmp_path, **wrong)
 
 
 def test_what_is_done_stays_done(diagnose: list[object], tmp_path: Path) -> None:

@@ -9,11 +9,14 @@ import pytest
 
 from tumblers import InputError
 from tumblers.blind.answer import Answer, TrueCause, seal
+from tumblers.blind.jitter import DIMENSIONS, NUMBERS
+from tumblers.blind.layout import STEADY_SIGMA
 from tumblers.blind.page import page_of, print_scores
 from tumblers.blind.records import Record, read_records
 from tumblers.blind.score import Scores, score_records
 from tumblers.blind.ties import difference_sigma, effect_of
 from tumblers.dataset import Dataset, LabTrial, Outcome, Sensor
+from tumblers.diagnosis.floor import TOLERANCES
 from tumblers.field import RotatingField
 from tumblers.model import Model
 from tumblers.presets import ROBOTS, SUBSTRATES
@@ -110,6 +113,9 @@ def scored(tie_sigma: float = 0.5) -> Scores:
         record(9, answer("outside", ("gusts", "outside", {"size": 0.5})), said("unexplained", friction(0.7, 0.9))),
         record(10, answer("outside", ("phase_jump", "outside", {}), where={"time_s": (0.4, 1.0)}),
                said("unexplained", where=({"axis": "time_s", "low": 0.5, "high": 0.9, "share_of_gap": 1.0},))),
+        # What points everywhere points nowhere: 0.6 of 2 s.
+        record(12, answer("outside", ("phase_jump", "outside", {}), where={"time_s": (0.4, 1.0)}),
+               said("unexplained", where=({"axis": "time_s", "low": 0.0, "high": 2.0, "share_of_gap": 1.0},))),
         record(11, answer("outside", ("gusts", "outside", {})), None, seconds=200.0),
     ]  # fmt: skip
     return score_records(records, 7, lambda _: tie_sigma)
@@ -138,22 +144,23 @@ def test_scores_are_those_computed_by_hand() -> None:
     assert value(scores, "one effect of 3 sigma or more: named first or truly tied") == 1.0
     assert value(scores, "two effects") == 0.5
     assert value(scores, "no effect") == 0.5
-    assert value(scores, "outside") == pytest.approx(2 / 3)
+    assert value(scores, "outside") == pytest.approx(3 / 4)
     # 0: inside; 1: outside; 5: three inside.
     assert value(scores, "parameters") == pytest.approx(4 / 5)
     assert value(scores, "median shrink, the catalogue") == 0.95
     assert value(scores, "median shrink, another") == 0.75
-    # 0: 1/2, 1: 1/3; nothing pointed out in 2, 4, 5, 6, 9 and 10.
+    # 0: 1/2, 1: 1/3; nothing pointed out in 2, 4, 5, 6, 9, 10 and 12.
     assert scores.overlaps["dataset-000"] == 0.5
     assert scores.overlaps["dataset-001"] == pytest.approx(1 / 3)
     assert value(scores, "where") == pytest.approx(1 / len(scores.overlaps))
-    assert scores.regions["time_s"].share == 1.0
+    # 10: 0.4 of 0.6 s; 12: 0.6 of 2 s.
+    assert (scores.regions["time_s"].hits, scores.regions["time_s"].count) == (1, 2)
     assert value(scores, "longest") is None, "nothing was diagnosed again"
     assert value(scores, "diagnosed again") is None
     assert scores.seconds_longest == 200.0
-    assert (scores.datasets, scores.diagnosed) == (12, 11)
+    assert (scores.datasets, scores.diagnosed) == (13, 12)
     assert scores.confusion["friction_coefficient"] == {"friction_coefficient": 2, "no_gap": 1, "viscous_drag": 1}
-    assert scores.confusion["outside"] == {"failed": 1, "unexplained": 2}
+    assert scores.confusion["outside"] == {"failed": 1, "unexplained": 3}
     assert {name: (s.hits, s.count) for name, s in scores.by_strength.items()} == {
         "0-1": (0, 1),
         "1-3": (0, 0),
@@ -178,17 +185,31 @@ def test_a_tie_that_simulation_does_not_bear_out_does_not_count() -> None:
 
 
 def test_the_page_and_the_tables_show_every_criterion(capsys: pytest.CaptureFixture[str]) -> None:
-    scores = scored()
+    scores = replace(scored(), drawn=20)
     page = page_of(scores)
     print_scores(scores)
-    assert capsys.readouterr().out
+    printed = capsys.readouterr().out
+    assert "20 datasets drawn, 13 tried, 12 diagnosed; every seal whole" in " ".join(printed.split())
+    assert "*" not in printed
     for criterion in scores.criteria:
         assert f"| {criterion.words} |" in page
-    assert "12 datasets drawn from seed 7, 12 of them tried, 11 diagnosed by version 1.0" in page
+    assert "20 datasets drawn from seed 7, 13 of them tried, 12 diagnosed by version 1.0" in page
     assert page.count("| **no** |") == sum(c.met is False for c in scores.criteria)
     table = json.loads(scores.to_json())
     assert table["format"] == "tumblers-blind-scores/1"
-    assert len(table["rows"]) == 12
+    assert len(table["rows"]) == 13
+
+
+def test_the_page_says_how_far_the_worlds_numbers_are_off() -> None:
+    page = page_of(scored())
+    # Those that the diagnosis assumes are another file's: the page must not claim more than holds.
+    for name, assumed in TOLERANCES.items():
+        drawn = DIMENSIONS if name in ("length", "height") else NUMBERS
+        same = page.partition("itself assumes of ")[2].partition(";")[0]
+        assert (name in same) == (drawn == assumed), name
+    assert f"a standard deviation of {100.0 * NUMBERS:g} %" in page
+    alone = f"the world's own step alone show by more than {STEADY_SIGMA:g} sigma"
+    assert f"a lab drops a trial in which the nominal numbers' being off and {alone}" in page
 
 
 def test_scores_of_nothing_are_not_numbers() -> None:

@@ -115,6 +115,12 @@ REFUSED = [
     (OUTCOME, "{ tilt_deg = 5 }", "trial[1].outcome.sigma_deg", "its standard deviation"),
     (OUTCOME, "{ tilt_deg = 95, sigma_deg = 1 }", "trial[1].outcome.tilt_deg", "at most 90"),
     (OUTCOME, "{ tilt_deg = -95, sigma_deg = 1 }", "trial[1].outcome.tilt_deg", "at least -90"),
+    (
+        'track = "tracks/f05.csv"',
+        "outcome = { tilt_deg = 5, sigma_deg = 1 }",
+        "trial[0].outcome.tilt_deg",
+        "found 5.0 in a rotating field, expected a static field or a table",
+    ),
     (TEXT[TEXT.index("[[trial]]") :], "", "trial", "no such key"),
     (TEXT[TEXT.index("[[trial]]") :], "[trial]\n", "trial", "an array of tables"),
     (

@@ -43,8 +43,8 @@ def tracks(draw: st.DrawFn) -> Track:
 
 
 @st.composite
-def outcomes(draw: st.DrawFn) -> Outcome:
-    speed, tilt = draw(st.booleans()), draw(st.booleans())
+def outcomes(draw: st.DrawFn, rests: bool) -> Outcome:
+    speed, tilt = draw(st.booleans()), rests and draw(st.booleans())
     return Outcome(
         climbs=draw(st.booleans() if speed or tilt else st.just(False)),
         mean_speed_m_per_s=draw(VALUE) if speed else None,
@@ -65,15 +65,16 @@ FIELD = (
 
 @st.composite
 def lab_trials(draw: st.DrawFn) -> LabTrial:
-    track = draw(MAYBE | tracks())
+    track, field = draw(MAYBE | tracks()), draw(FIELD)
+    seen = outcomes(not isinstance(field, RotatingField))
     return LabTrial(
         id=draw(NAME | st.sampled_from(["f05", "slope30", "../out", 'a"b\\', "é"])),
-        field=draw(FIELD),
+        field=field,
         duration_s=DURATION,
         incline_deg=draw(st.floats(-89, 89)),
         gravity_m_per_s2=draw(st.floats(0, 20)),
         track=track,
-        outcome=draw(outcomes() if track is None else MAYBE | outcomes()),
+        outcome=draw(seen if track is None else MAYBE | seen),
     )
 
 

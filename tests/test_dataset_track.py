@@ -50,6 +50,22 @@ def test_trackpy_columns_with_their_index(tmp_path: Path) -> None:
     np.testing.assert_allclose(track.channels["y_m"], [0.0, 2e-5], atol=1e-18)
 
 
+def test_frames_that_trackpy_writes_twice(tmp_path: Path) -> None:
+    track = read(tmp_path, "frame,y,x,frame,particle\n0,100,50,0,3\n5,98,51,5,3\n")
+    np.testing.assert_allclose(track.time_s, [0.0, 0.1])
+    with pytest.raises(InputError, match="two columns 'frame', expected the same frames in both"):
+        read(tmp_path, "frame,y,x,frame\n0,100,50,0\n5,98,51,6\n")
+    with pytest.raises(InputError, match="two columns 'x', expected each column once"):
+        read(tmp_path, "frame,y,x,x\n0,100,50,50\n")
+
+
+def test_an_index_without_a_name_is_passed_over(tmp_path: Path) -> None:
+    track = read(tmp_path, ",time_s,x_m\n7,0.0,1e-6\n8,0.1,2e-6\n")
+    assert list(track.channels) == ["x_m"]
+    with pytest.raises(InputError, match="with a column ''"):
+        read(tmp_path, "time_s,x_m,\n0.0,1e-6,7\n")
+
+
 @pytest.mark.parametrize(
     ("y_axis", "x", "y"),
     [

@@ -140,6 +140,7 @@ def test_the_definition_is_complete(effect: type[Effect]) -> None:
     for words in ("neutral", "plausible" if effect.name != "eddy_current_drag" else "searched", "Not modelled"):
         assert words in text
     assert effect.source
+    assert f"Source: {effect.source}. Attributes" in text
     for p in effect.parameters:
         assert p.unit
         assert p.meaning

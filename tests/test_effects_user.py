@@ -110,7 +110,7 @@ def test_a_file_registers_all_its_effects_or_none(tmp_path: Path) -> None:
         ("raise SystemExit(3)\n", "found SystemExit: 3, expected a Python file that runs"),
         (FILE.replace('"coil_yaw"', '"Coil yaw"'), "CoilYaw.name: found 'Coil yaw', expected a name in small letters"),
         (FILE.replace("def act", "def acts"), "coil_yaw: found no method `act`"),
-        (FILE.replace('    source: ClassVar[str] = "arithmetic"\n', ""), "coil_yaw.source: found None"),
+        (FILE.replace("    Source: arithmetic.\n", ""), "coil_yaw.source: found None"),
         (FILE.replace("    yaw_deg: float = 0.0\n", "    yaw_deg: float\n"), "coil_yaw.yaw_deg: found no default"),
         (FILE.replace("yaw_deg: float = 0.0", "yaw_deg: float = 1.0"), "coil_yaw.parameters: found the fields"),
         (FILE.replace("yaw_deg: float = 0.0", "yaw: float = 0.0"), "coil_yaw.parameters: found the fields"),
@@ -119,13 +119,13 @@ def test_a_file_registers_all_its_effects_or_none(tmp_path: Path) -> None:
     ],
 )
 def test_an_incomplete_file_is_refused_in_one_line(tmp_path: Path, text: str, message: str) -> None:
-    path, before = write(tmp_path, text), dict(CATALOGUE)
+    path, before, modules = write(tmp_path, text), dict(CATALOGUE), set(sys.modules)
     with pytest.raises(InputError) as error:
         load_file(path)
     assert str(error.value).startswith(f"{path}: {message}")
     assert "\n" not in str(error.value)
     assert before == CATALOGUE
-    assert not [name for name in sys.modules if name.startswith("tumblers_effects_")]
+    assert not [name for name in set(sys.modules) - modules if name.startswith("tumblers_effects_")]
 
 
 def test_a_file_that_is_none_is_refused(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 
 from .errors import InputError, show
 
-__all__ = ["Vector", "choice", "direction", "number", "sequence", "text", "unit_quaternion", "vector"]
+__all__ = ["Vector", "choice", "direction", "number", "sequence", "text", "thread_count", "unit_quaternion", "vector"]
 
 Vector = tuple[float, float, float]
 T = TypeVar("T")
@@ -20,6 +20,8 @@ T = TypeVar("T")
 _UNIT = 1e-12
 # A quaternion written with few digits is still meant to have length one.
 _QUATERNION_UNIT = 1e-6
+# More threads than any machine has cores only take its memory.
+_MOST_THREADS = 1024
 
 
 def number(
@@ -56,6 +58,13 @@ def text(key: str, value: object, expected: str) -> str:
     """Return a string."""
     if not isinstance(value, str):
         raise InputError(key, show(value), expected)
+    return value
+
+
+def thread_count(key: str, value: object) -> int:
+    """Return a number of threads or processes."""
+    if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= _MOST_THREADS:
+        raise InputError(key, show(value), f"a whole number of at least 1 and at most {_MOST_THREADS}")
     return value
 
 

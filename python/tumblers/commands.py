@@ -13,16 +13,27 @@ import typer.main
 from typer.exceptions import TyperException
 
 from .blind.commands import blind_app
-from .check import choice
+from .check import choice, thread_count
 from .diagnose_command import diagnose
 from .errors import InputError, SimulationError, TumblersError
 from .field import field_to_table
 from .grid import PAPER_DRAFTS_DEG, PAPER_MAGNETIZATION_DEG
-from .options import PLOT_SUFFIXES, as_option, magnetization_cases, numbers, output_file
+from .options import (
+    PLOT_SUFFIXES,
+    EffectFiles,
+    as_option,
+    load_effect_files,
+    magnetization_cases,
+    numbers,
+    output_file,
+)
 from .presets import DRIVES, EXPERIMENTS, ROBOTS, SUBSTRATES, preset_scenario
+from .reproduce_command import reproduce
 from .scenario import Scenario
 from .section import as_section, write_section
+from .studies.commands import climb, convergence, design, tolerance
 from .version import __version__
+from .view_command import AnimateOption, CycleOption, Pictures, SnapshotsOption, ViewOption, view
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -69,6 +80,12 @@ def _tumblers(
 
 
 app.command()(diagnose)
+app.command()(climb)
+app.command()(tolerance)
+app.command()(design)
+app.command()(convergence)
+app.command()(view)
+app.command()(reproduce)
 app.add_typer(blind_app, name="blind")
 
 
@@ -77,6 +94,11 @@ def simulate(
     scenario: _ScenarioFile,
     out: _Out,
     plot: _Plot = None,
+    snapshots: SnapshotsOption = None,
+    cycle: CycleOption = None,
+    animate: AnimateOption = None,
+    view: ViewOption = None,
+    effects: EffectFiles = None,
     solver: Annotated[
         str, typer.Option(help="reduced (fast), or general (the paper's unreduced problem).")
     ] = "reduced",
@@ -87,9 +109,14 @@ def simulate(
     Examples:
       tumblers simulate slope.toml --out run.nc
       tumblers simulate slope.toml --out run.nc --plot run.png
+      tumblers simulate slope.toml --out run.nc --animate run.gif --view run.html
+      tumblers simulate turned.toml --effects coil_yaw.py --out run.nc
     """
     _check_outputs(out, plot, scenario)
+    pictures = Pictures(snapshots=snapshots, cycle=cycle, animate=animate, view=view)
+    pictures.check([scenario, out, *([] if plot is None else [plot])])
     choice("--solver", solver, ("reduced", "general"))
+    load_effect_files(effects)
     loaded = Scenario.load(scenario)
     with _of_file(scenario):
         loaded.run.check_rows()
@@ -99,7 +126,7 @@ def simulate(
     start = perf_counter()
     result = run_scenario(loaded, solver, progress=True)  # type: ignore[arg-type]
     seconds = perf_counter() - start
-    _write(result, out, plot)
+    _write(result, out, plot, pictures)
     typer.echo(run_summary(result, seconds))
     _warn(run_warnings(result, loaded.run.steps))
 
@@ -121,6 +148,7 @@ def sweep(
     theta2: Annotated[str, typer.Option(help="Magnetization errors θ2 in degrees, each with each θ1 but 0.")] = _THETA2,
     jobs: Annotated[int | None, typer.Option(help="Threads; all by default. The result does not depend on it.")] = None,
     plot: _Plot = None,
+    effects: EffectFiles = None,
 ) -> None:
     """Run a scenario for a grid of drafts and magnetization errors; the paper's 16 × 37 cases by default.
 
@@ -133,9 +161,10 @@ def sweep(
     if file is not None and file.suffix != ".toml" and not file.exists():
         raise InputError("--robot", repr(robot), f"{', '.join([*EXPERIMENTS, *ROBOTS])} or a scenario file .toml")
     _check_outputs(out, plot, file)
-    if jobs is not None and jobs < 1:
-        raise InputError("--jobs", str(jobs), "a whole number of at least 1")
+    if jobs is not None:
+        thread_count("--jobs", jobs)
     drafts_deg = numbers("--drafts", drafts)
+    load_effect_files(effects)
     cases = magnetization_cases(numbers("--theta1", theta1), numbers("--theta2", theta2))
     if file is not None:
         scenario = Scenario.load(file)
@@ -214,7 +243,7 @@ def _check_outputs(out: Path, plot: Path | None, scenario: Path | None) -> None:
         output_file("--plot", plot, PLOT_SUFFIXES, [*taken, out])
 
 
-def _write(result: xr.Dataset, out: Path, plot: Path | None) -> None:
+def _write(result: xr.Dataset, out: Path, plot: Path | None, pictures: Pictures | None = None) -> None:
     from .atomic import write_files
     from .netcdf import netcdf_bytes
 
@@ -223,6 +252,8 @@ def _write(result: xr.Dataset, out: Path, plot: Path | None) -> None:
         from .plots import figure_bytes
 
         files[plot] = figure_bytes(result, plot.suffix.lower().removeprefix("."))
+    if pictures is not None:
+        files |= pictures.files(result)
     write_files(files)
 
 

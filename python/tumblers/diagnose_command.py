@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from .check import thread_count
 from .errors import InputError
 
 __all__ = ["diagnose"]
@@ -17,7 +18,10 @@ __all__ = ["diagnose"]
 def diagnose(
     dataset: Annotated[Path, typer.Argument(metavar="DATASET", help="Folder with dataset.toml, tumblers-dataset/1.")],
     out: Annotated[
-        Path, typer.Option("--out", help="Folder for diagnosis.json, effects.toml, report.html; made if missing.")
+        Path,
+        typer.Option(
+            "--out", help="Folder for diagnosis.json, effects.toml, scenario.toml, report.html; made if missing."
+        ),
     ],
     effects: Annotated[
         str | None,
@@ -37,8 +41,8 @@ def diagnose(
       tumblers diagnose lab/spring --effects friction_coefficient,stray_field_gradient,coil_yaw.py --out diagnosis
     """  # noqa: D301 - \b keeps the lines of an example apart
     _check_folder(out)
-    if jobs is not None and jobs < 1:
-        raise InputError("--jobs", str(jobs), "a whole number of at least 1")
+    if jobs is not None:
+        thread_count("--jobs", jobs)
     if seed < 0:
         raise InputError("--seed", str(seed), "a whole number of at least 0")
     from .dataset import load
@@ -49,7 +53,11 @@ def diagnose(
     from .diagnosis.words import summary
 
     start = perf_counter()
-    diagnosis = run(measured, effects=names, jobs=jobs, seed=seed, progress=True)
+    try:
+        diagnosis = run(measured, effects=names, jobs=jobs, seed=seed, progress=True)
+    except InputError as error:
+        # What the options may be was checked: it is the dataset that is refused.
+        raise error.in_file(dataset) from None
     diagnosis.save(out)
     typer.echo(summary(diagnosis))
     typer.echo(f"\nreport: {out / 'report.html'}\ntime: {perf_counter() - start:.1f} s")
@@ -64,6 +72,11 @@ def _check_folder(out: Path) -> None:
     written = out if out.exists() else out.parent
     if not os.access(written, os.W_OK | os.X_OK):
         raise InputError("--out", f"'{out}'", f"a folder that can be written to, '{written}' cannot")
+    from .diagnosis.diagnosis import FILES
+
+    for name in FILES:
+        if (out / name).is_dir():
+            raise InputError("--out", f"the folder '{out / name}'", f"a folder in which {name} can be written")
 
 
 def _effect_names(text: str) -> list[str]:

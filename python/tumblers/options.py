@@ -7,13 +7,33 @@ from collections.abc import Sequence
 from itertools import pairwise
 from math import floor
 from pathlib import Path
+from typing import Annotated
+
+import typer
 
 from .check import number
 from .errors import InputError
 
-__all__ = ["PLOT_SUFFIXES", "as_option", "magnetization_cases", "numbers", "output_file"]
+__all__ = [
+    "PLOT_SUFFIXES",
+    "EffectFiles",
+    "as_option",
+    "load_effect_files",
+    "magnetization_cases",
+    "numbers",
+    "output_file",
+]
 
 PLOT_SUFFIXES = (".png", ".pdf", ".svg")
+EffectFiles = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--effects",
+        metavar="FILE.py,..",
+        help="Files with effects of your own, which the scenario's [[effect]] may then name.",
+    ),
+]
+
 _MOST = 100_000
 _EXPECTED = "numbers such as 0,1,2 or a range such as 0:15 or 10:360:10"
 
@@ -54,6 +74,18 @@ def _number(option: str, text: str, word: str) -> float:
 def magnetization_cases(theta1: Sequence[float], theta2: Sequence[float]) -> list[tuple[float, float]]:
     """Return each θ1 with each θ2, degrees; θ1 = 0 once, since θ2 has no meaning there."""
     return [pair for first in theta1 for pair in ([(first, t) for t in theta2] if first != 0.0 else [(0.0, 0.0)])]
+
+
+def load_effect_files(texts: Sequence[str] | None) -> None:
+    """Register the effects of files, each text one file or several with commas between."""
+    if not texts:
+        return
+    from .effects.catalogue import load_file
+
+    for word in (word.strip() for text in texts for word in text.split(",")):
+        if not word.endswith(".py"):
+            raise InputError("--effects", repr(word), "a Python file with effects, .py")
+        load_file(word)
 
 
 def output_file(option: str, path: Path, suffixes: Sequence[str], taken: Sequence[Path]) -> None:

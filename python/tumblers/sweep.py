@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from . import _core
-from .check import sequence
+from .check import sequence, thread_count
 from .errors import InputError, TumblersError, show
 from .field import RotatingField
 from .grid import PAPER_DRAFTS_DEG, PAPER_MAGNETIZATION_DEG
@@ -88,8 +88,8 @@ def sweep(
     cases = sequence("magnetization", magnetization, "a list of pairs of numbers", _pair)
     if not drafts or not cases:
         raise InputError("magnetization" if drafts else "drafts_deg", "an empty list", "at least one case")
-    if threads is not None and (isinstance(threads, bool) or not isinstance(threads, int) or threads < 1):
-        raise InputError("threads", show(threads), "a whole number of at least 1")
+    if threads is not None:
+        thread_count("threads", threads)
     trials: list[_core.Trial] = []
     errors = []
     for draft in drafts:

@@ -4,20 +4,27 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import numpy as np
 import pytest
 
 import tumblers
 from tumblers.commands import run
-from tumblers.dataset import Dataset
-from tumblers.diagnosis.diagnosis import Diagnosis
+from tumblers.dataset import Dataset, Track
+from tumblers.diagnosis.diagnosis import FILES, Diagnosis
 from tumblers.diagnosis.words import summary
 from tumblers.effects.catalogue import CATALOGUE
 
 from .example import lab, small
+
+
+def unseen() -> Dataset:
+    track = Track(time_s=np.array([0.0, 0.1]), channels={"y_m": np.full(2, np.nan)})
+    return replace(lab(), trials=(replace(lab().trials[0], track=track),))
 
 
 def tumble(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
@@ -32,7 +39,10 @@ def tumble(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
         (["nowhere", "--out", "out"], "nowhere"),
         (["data", "--out", "nowhere/out"], "'nowhere' does not"),
         (["data", "--out", "file"], "the file 'file'"),
+        (["data", "--out", "taken"], "--out: found the folder 'taken/diagnosis.json'"),
         (["data", "--out", "out", "--jobs", "0"], "--jobs: found 0"),
+        (["data", "--out", "out", "--jobs", "100000"], "--jobs: found 100000"),
+        (["lost", "--out", "out"], "lost: trial: found no measurement in any trial: every frame is lost"),
         (["data", "--out", "out", "--seed", "-1"], "--seed: found -1"),
         (
             ["data", "--out", "out", "--effects", "friction_coefficient,wind"],
@@ -45,6 +55,8 @@ def tumble(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
 )
 def test_bad_input_gets_one_line_and_writes_nothing(tmp_path: Path, arguments: list[str], words: str) -> None:
     lab(tracks=False).save(tmp_path / "data")
+    unseen().save(tmp_path / "lost")
+    (tmp_path / "taken" / "diagnosis.json").mkdir(parents=True)
     (tmp_path / "file").write_text("")
     (tmp_path / "bad.py").write_text("x = 1\n")
     before = sorted(tmp_path.rglob("*"))
@@ -100,7 +112,7 @@ def test_the_command_writes_the_files_and_prints_the_summary(
     assert said.out.startswith(summary(small()))
     assert f"report: {out / 'report.html'}" in said.out
     assert said.err == ""
-    assert {file.name for file in out.iterdir()} == {"diagnosis.json", "effects.toml", "report.html"}
+    assert {file.name for file in out.iterdir()} == set(FILES)
     asked = {"effects": ["draft_angle", "size_error"], "jobs": 2, "seed": 5, "progress": True}
     assert computation.asked == asked
 

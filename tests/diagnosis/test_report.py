@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from tumblers import InputError
 from tumblers.diagnosis import plots
-from tumblers.diagnosis.diagnosis import Diagnosis
+from tumblers.diagnosis.diagnosis import FILES, Diagnosis
 from tumblers.diagnosis.report import report_html
 from tumblers.diagnosis.result import (
     Region,
@@ -121,9 +121,9 @@ def test_what_a_user_wrote_is_shown_and_never_run() -> None:
     assert all(load.startswith(("data:", "#")) for load in read.loads)
 
 
-def test_saving_writes_three_files(tmp_path: Path) -> None:
+def test_saving_writes_every_file(tmp_path: Path) -> None:
     small().save(tmp_path / "out")
-    assert {file.name for file in (tmp_path / "out").iterdir()} == {"diagnosis.json", "effects.toml", "report.html"}
+    assert {file.name for file in (tmp_path / "out").iterdir()} == set(FILES)
     table = json.loads((tmp_path / "out" / "diagnosis.json").read_text())
     assert table["effects"][0]["name"] == "stray_field_gradient"
 

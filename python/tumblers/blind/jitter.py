@@ -11,9 +11,10 @@ from ..field import TableField
 from ..robot import Robot
 from ..scenario import Scenario
 
-__all__ = ["Jitter"]
+__all__ = ["DIMENSIONS", "NUMBERS", "Jitter"]
 
-_NUMBERS, _DIMENSIONS = 0.005, 0.001
+# Standard deviations of the factors: of every number, and of every length of the shape.
+NUMBERS, DIMENSIONS = 0.005, 0.001
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -48,8 +49,8 @@ class Jitter:
             The robot.
         """
         names = [f.name for f in fields(cls) if f.name != "dimensions"]
-        factors = {name: 1.0 + _NUMBERS * float(rng.normal()) for name in names}
-        lengths = tuple(1.0 + _DIMENSIONS * float(rng.normal()) for _ in fields(robot.shape))
+        factors = {name: 1.0 + NUMBERS * float(rng.normal()) for name in names}
+        lengths = tuple(1.0 + DIMENSIONS * float(rng.normal()) for _ in fields(robot.shape))
         return cls(**factors, dimensions=lengths)
 
     def edit(self, scenario: Scenario) -> Scenario:

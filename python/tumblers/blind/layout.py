@@ -19,7 +19,7 @@ from .strength import Strength, strength
 from .view import climbs, rest_tilt
 from .world import Scene, watch
 
-__all__ = ["draw_lab", "jitter_strength", "world_scenario"]
+__all__ = ["STEADY_SIGMA", "draw_lab", "jitter_strength", "world_scenario"]
 
 _PAIRS = (
     ("cuboid", "paper", 0.010),
@@ -31,7 +31,7 @@ _PAIRS = (
 _FREQUENCIES_HZ = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0)
 _TRIES = 12
 # A lab keeps the trials that repeat: those in which the numbers' jitter and the step stay below the noise.
-_REPEATS = 1.0
+STEADY_SIGMA = 1.0
 
 
 def world_scenario(lab: Lab, plan: Plan, jitter: Jitter) -> Scenario:
@@ -202,7 +202,7 @@ def _repeats(lab: Lab, plan: Plan, jitter: Jitter) -> bool:
         return False
     if not _sensible(plan, nominal, lab):
         return False
-    return strength(alone, [world], [nominal]).sigma <= _REPEATS
+    return strength(alone, [world], [nominal]).sigma <= STEADY_SIGMA
 
 
 def _finer(scenario: Scenario) -> Scenario:

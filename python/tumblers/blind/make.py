@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import secrets
 import shutil
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
@@ -14,8 +15,7 @@ from os import PathLike
 from pathlib import Path
 from uuid import uuid4
 
-import numpy as np
-
+from ..check import thread_count
 from ..dataset import Dataset
 from ..errors import InputError, show
 from ..progress import OnProgress, native_call
@@ -41,7 +41,8 @@ def make(
     """Write datasets to a folder, and their answers beside them.
 
     A folder ``dataset-000`` holds a dataset and ``seal.json``, the SHA-256 of its salted answer; ``answers.json`` holds
-    the salts and the answers. All files are written at the end, or none.
+    the salts and the answers. All files are written at the end, or none. Datasets and answers depend on the seed
+    alone; the salts are new each time, so that nobody who knows the seed can open a seal.
 
     Parameters
     ----------
@@ -50,41 +51,45 @@ def make(
     seed, count
         What everything is drawn from, and how many datasets there are to be.
     jobs
-        Number of processes, all cores by default. The files do not depend on it.
+        Number of processes, all cores by default. The datasets do not depend on it.
     progress
         True for a progress bar over the datasets, or a callback that is told how many are done.
 
     Raises
     ------
     InputError
-        A number that is refused, or a folder that holds datasets or answers already.
+        A number that is refused, a folder that holds datasets or answers already, or one in a folder that is missing.
     SimulationError
         A world could not be made.
     OSError
         A folder that cannot be written to, or a full disk.
     """
-    for name, value, least in (("seed", seed, 0), ("count", count, 1), ("jobs", 1 if jobs is None else jobs, 1)):
+    for name, value, least in (("seed", seed, 0), ("count", count, 1)):
         if isinstance(value, bool) or not isinstance(value, int) or value < least:
             raise InputError(name, show(value), f"a whole number of at least {least}")
+    if jobs is not None:
+        thread_count("jobs", jobs)
     directory = Path(directory)
     if directory.exists() and not directory.is_dir():
         raise InputError("out", f"the file '{directory}'", "a folder")
+    if not directory.parent.is_dir():
+        raise InputError("out", f"'{directory}'", f"a folder in one that exists, '{directory.parent}' does not")
     if directory.is_dir() and (any(directory.glob("dataset-*")) or (directory / ANSWERS).exists()):
         raise InputError("out", f"datasets or answers in '{directory}'", "a folder without any")
     with _staging(directory) as staging, native_call("datasets", count, progress) as on_progress:
         answers = []
         with workers(jobs) as pool:
             for index, (dataset, answer) in enumerate(pool.map(partial(draw_dataset, seed), range(count))):
-                answers.append(_write(staging, seed, index, dataset, answer))
+                answers.append(_write(staging, index, dataset, answer))
                 if on_progress is not None:
                     on_progress(index + 1)
         text = json.dumps({"format": ANSWERS_FORMAT, "seed": seed, "answers": answers}, indent=1)
         (staging / ANSWERS).write_text(text + "\n", encoding="utf-8")
 
 
-def _write(staging: Path, seed: int, index: int, dataset: Dataset, answer: Answer) -> dict[str, object]:
+def _write(staging: Path, index: int, dataset: Dataset, answer: Answer) -> dict[str, object]:
     name = f"dataset-{index:03d}"
-    salt = np.random.default_rng([seed, 5, index]).bytes(16).hex()
+    salt = secrets.token_hex(16)
     table = answer.table()
     dataset.save(staging / name)
     sealed = {"format": SEAL_FORMAT, "sha256": seal(salt, table)}

@@ -5,10 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from ..diagnosis.floor import TOLERANCES
 from .draw import QUIET_SIGMA, QUIET_TRIAL_SIGMA, REPEATS
+from .jitter import DIMENSIONS, NUMBERS
+from .layout import STEADY_SIGMA
 from .score import Criterion, Scores, Share
 
 __all__ = ["page_of", "print_scores"]
+
+_MET = {True: "yes", False: "no", None: "nothing to measure"}
 
 
 def page_of(scores: Scores) -> str:
@@ -30,15 +35,20 @@ def page_of(scores: Scores) -> str:
         "The strength of a cause is the root mean square of what it changes in all numbers that were observed, in "
         "standard deviations of their noise, after the sensor's stated tolerances (origin, clock, heading, scale) have "
         "taken what they can.",
-        "Easier than a lab's data in these ways: a lab is drawn again where the nominal numbers' being off and the "
-        f"world's own step alone would move its numbers by more than {QUIET_SIGMA:g} sigma, or one trial's by more "
+        _jitter(),
+        "Easier than a lab's data in these ways: a lab drops a trial in which the nominal numbers' being off and the "
+        f"world's own step alone show by more than {STEADY_SIGMA:g} sigma; it is drawn again where they would move "
+        f"all its numbers by more than {QUIET_SIGMA:g} sigma, or one trial's by more "
         f"than {QUIET_TRIAL_SIGMA:g}, so that the most sensitive motions near step-out and the friction angle are "
         "missing; causes whose motion depends on the world's own step by more than "
         f"{100.0 * REPEATS:.0f} % of what they change are drawn again in another lab, up to a dozen times, for a lab "
         "shows what it sees again; a pair of effects that does not show in three labs is drawn again. An effect counts "
         "as named first where it leads the effects of the diagnosis, whatever the verdict.",
         "## What has to hold",
-        _table(("", "found", "wanted", "of", "met"), [_criterion_row(c) for c in scores.criteria]),
+        _table(
+            ("", "found", "wanted", "of", "met"),
+            [(*_criterion_row(c), "**no**" if c.met is False else _MET[c.met]) for c in scores.criteria],
+        ),
         "## What was named first",
         "Rows are truths, columns what a diagnosis said: the first effect where it is `explained`, else its verdict. "
         "Datasets with two effects are below.",
@@ -72,7 +82,8 @@ def page_of(scores: Scores) -> str:
         "## Where",
         "Overlap of the trials that were pointed out with those that the causes affect by 1 sigma or more (what both "
         "share over all of them), where that is a part of the trials; and regions of other axes in which a cause acts, "
-        "overlapped by half or more.",
+        "overlapped by half or more: what both intervals share over what they cover together, so that a region of "
+        "everything does not count.",
         _table(
             ("axis", "by half or more", "of"),
             [_share_row("trial", _halves(scores)), *(_share_row(axis, s) for axis, s in scores.regions.items())],
@@ -101,6 +112,23 @@ def page_of(scores: Scores) -> str:
     return "\n\n".join(parts) + "\n"
 
 
+def _jitter() -> str:
+    drawn = {name: DIMENSIONS if name in ("length", "height") else NUMBERS for name in TOLERANCES}
+    same = [name for name, sigma in drawn.items() if sigma == TOLERANCES[name]]
+    other = [f"{_share(assumed)} of {name}" for name, assumed in TOLERANCES.items() if name not in same]
+    return (
+        "The world's numbers are off from those that the lab believes, each by its own draw, with a standard deviation "
+        f"of {_share(NUMBERS)}, the lengths of its shape with one of {_share(DIMENSIONS)}. These are the standard "
+        f"deviations that the diagnosis itself assumes of {', '.join(same)}"
+        + (f"; it assumes {', '.join(other)}" if other else "")
+        + ". A lab whose numbers are worse than that is not among these."
+    )
+
+
+def _share(value: float) -> str:
+    return f"{100.0 * value:g} %"
+
+
 def _repeated(scores: Scores) -> str:
     if scores.repeated_longest is None:
         return ""
@@ -122,11 +150,12 @@ def print_scores(scores: Scores) -> None:
     from rich.table import Table
 
     console = Console()
-    table = Table(title=f"{scores.diagnosed} of {scores.datasets} datasets diagnosed, every seal whole")
+    title = f"{scores.drawn} datasets drawn, {scores.datasets} tried, {scores.diagnosed} diagnosed; every seal whole"
+    table = Table(title=title)
     for heading in ("", "found", "wanted", "of", "met"):
         table.add_column(heading, overflow="fold")
     for criterion in scores.criteria:
-        table.add_row(*_criterion_row(criterion))
+        table.add_row(*_criterion_row(criterion), _MET[criterion.met])
     console.print(table)
     table = Table(title="one effect, by its strength")
     for heading in ("sigma", "named first", "of"):
@@ -136,7 +165,7 @@ def print_scores(scores: Scores) -> None:
     console.print(table)
 
 
-def _criterion_row(criterion: Criterion) -> tuple[str, str, str, str, str]:
+def _criterion_row(criterion: Criterion) -> tuple[str, str, str, str]:
     open_end = criterion.high == float("inf")
     if criterion.low == 0.0:
         wanted = f"at most {criterion.high:g}"
@@ -144,9 +173,8 @@ def _criterion_row(criterion: Criterion) -> tuple[str, str, str, str, str]:
         wanted = f"at least {criterion.low:g}"
     else:
         wanted = f"{criterion.low:g} to {criterion.high:g}"
-    met = {True: "yes", False: "**no**", None: "nothing to measure"}[criterion.met]
     digits = 0 if open_end else 2
-    return criterion.words, _number(criterion.value, digits), wanted, str(criterion.count), met
+    return criterion.words, _number(criterion.value, digits), wanted, str(criterion.count)
 
 
 def _confusion(scores: Scores) -> str:

@@ -8,6 +8,7 @@ from pathlib import Path
 from time import perf_counter
 
 from ..atomic import write_files
+from ..check import thread_count
 from ..errors import InputError
 from ..progress import OnProgress, native_call
 from ..version import __version__
@@ -49,9 +50,9 @@ def repeat(
     OSError
         A folder that cannot be written to, or a full disk.
     """
-    for name, value in (("count", count), ("threads", threads)):
-        if value < 1:
-            raise InputError(name, str(value), "at least 1")
+    if count < 1:
+        raise InputError("count", str(count), "a whole number of at least 1")
+    thread_count("threads", threads)
     found = {path.parent: _seconds(path) for path in Path(directory).glob(f"dataset-*/{RECORD}")}
     took = {folder: seconds for folder, seconds in found.items() if seconds is not None}
     if not took:

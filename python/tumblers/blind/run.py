@@ -11,6 +11,7 @@ from time import perf_counter
 from typing import NamedTuple
 
 from ..atomic import write_files
+from ..check import thread_count
 from ..errors import InputError
 from ..progress import OnProgress, native_call
 from ..version import __version__
@@ -59,12 +60,14 @@ def run(
     Raises
     ------
     InputError
-        A folder without datasets, a number of a dataset that is not there, or no thread.
+        A folder without datasets, a number of a dataset that is not there, or a number of threads or processes that is
+        refused.
     OSError
         A folder that cannot be written to, or a full disk.
     """
-    if threads < 1:
-        raise InputError("threads", str(threads), "at least 1")
+    thread_count("threads", threads)
+    if jobs is not None:
+        thread_count("jobs", jobs)
     folders = {int(path.name.removeprefix("dataset-")): path for path in sorted(Path(directory).glob("dataset-[0-9]*"))}
     if not folders:
         raise InputError(None, "no datasets", "a folder of `tumblers blind make`", directory)

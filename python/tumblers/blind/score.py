@@ -95,7 +95,7 @@ class Scores:
     overlaps
         Dataset to the overlap of the trials that were pointed out with those affected.
     regions
-        Axis to how many regions in which a cause acts were overlapped by half or more.
+        Axis to how many regions in which a cause acts were overlapped, intersection over union, by half or more.
     seconds_mean, seconds_longest, threads
         Time of a diagnosis, s, and the most threads that one had.
     repeated_longest, repeated_threads
@@ -384,10 +384,10 @@ def _regions(records: Sequence[Record]) -> dict[str, Share]:
 
 
 def _shared(first: tuple[float, float], second: tuple[float, float]) -> float:
-    """Return the share of the shorter interval that both cover."""
+    """Return intersection over union of two intervals: a region that covers everything points nowhere."""
     both = min(first[1], second[1]) - max(first[0], second[0])
-    shorter = min(first[1] - first[0], second[1] - second[0])
-    return max(both, 0.0) / shorter if shorter > 0.0 else float(both >= 0.0)
+    union = max(first[1], second[1]) - min(first[0], second[0])
+    return max(both, 0.0) / union if union > 0.0 else 1.0
 
 
 def _row(record: Record) -> dict[str, Any]:

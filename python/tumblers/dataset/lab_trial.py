@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from ..check import number
 from ..errors import InputError, show
-from ..field import Field, TableField
+from ..field import Field, RotatingField, TableField
 from ..model import Model
 from ..run import Run
 from ..scenario import Scenario
@@ -49,7 +49,7 @@ class LabTrial:
     ------
     InputError
         A number that is refused, a tabulated field that does not cover the trial, rows of the track that are outside
-        the trial by more than half a frame, or no observation.
+        the trial by more than half a frame, no observation, or an angle at rest in a rotating field.
     """
 
     id: str
@@ -80,6 +80,9 @@ class LabTrial:
             raise InputError("trial.outcome", show(self.outcome), "an Outcome")
         if self.track is None and self.outcome is None:
             raise InputError("trial.track", "neither a track nor an outcome", "at least one of them")
+        if self.outcome is not None and self.outcome.tilt_deg is not None and isinstance(self.field, RotatingField):
+            expected = "a static field or a table, in which the robot comes to rest"
+            raise InputError("trial.outcome.tilt_deg", f"{show(self.outcome.tilt_deg)} in a rotating field", expected)
         if self.track is not None and self.track.time_s.size:
             self._covers(self.track)
 

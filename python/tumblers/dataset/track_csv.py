@@ -19,7 +19,7 @@ __all__ = ["read_track_csv", "write_track_csv"]
 
 _PIXELS = (("x_px", "y_px"), ("x", "y"))
 # What trackpy and pandas write beside frame, x and y; it says nothing about where the robot is.
-_PASSED_OVER = ("particle", "mass", "size", "ecc", "signal", "raw_mass", "ep", "")
+_PASSED_OVER = ("particle", "mass", "size", "ecc", "signal", "raw_mass", "ep")
 _LOST = "a finite number, or an empty cell for a lost frame"
 
 
@@ -126,10 +126,16 @@ def _read(key: str, path: Path, name: str) -> _Table:
     for line, row in rows[1:]:
         if len(row) != len(header):
             raise InputError(key, f"{name} line {line} with {len(row)} cells", f"{len(header)}")
-    for column in header:
-        if header.count(column) > 1:
-            raise InputError(key, f"{name} with two columns {show(column)}", "each column once")
-    cells = {column: [row[i] for _, row in rows[1:]] for i, column in enumerate(header)}
+    # pandas writes an index without a name first, and says nothing with it.
+    kept = [i for i, column in enumerate(header) if i > 0 or column]
+    cells: dict[str, list[str]] = {}
+    for i in kept:
+        column, entries = header[i], [row[i] for _, row in rows[1:]]
+        # What trackpy filters has its frames twice: as the index, and as a column.
+        if column in cells and (column != "frame" or entries != cells[column]):
+            expected = "each column once" if column != "frame" else "the same frames in both"
+            raise InputError(key, f"{name} with two columns {show(column)}", expected)
+        cells[column] = entries
     return _Table(key=key, name=name, lines=[line for line, _ in rows[1:]], cells=cells)
 
 

@@ -22,6 +22,8 @@ class AdhesionCoefficient(Effect):
 
     A is the area that touches. Not modelled: adhesion that grows with the time of contact or with the load.
 
+    Source: Xie, Bi, Cappelleri, Chakraborty: C of paper and of aluminium, in the text and in the released code.
+
     Attributes
     ----------
     factor
@@ -33,9 +35,6 @@ class AdhesionCoefficient(Effect):
         Parameter(
             key="factor", neutral=1.0, low=0.0, high=8.0, unit="1", meaning="adhesion over the nominal one", least=0.0
         ),
-    )
-    source: ClassVar[str] = (
-        "Xie, Bi, Cappelleri, Chakraborty: C of paper and of aluminium, in the text and in the released code"
     )
     factor: float = 1.0
 

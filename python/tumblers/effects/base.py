@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from math import inf
-from typing import TYPE_CHECKING, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from ..check import number, sequence
 from ..errors import InputError, show
@@ -18,6 +19,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Effect"]
 
+# The paragraph of a docstring that says where the equation comes from.
+_SOURCE = re.compile(r"^\s*Source: (.+?)\s*(?:\n\s*\n|\Z)", re.DOTALL | re.MULTILINE)
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Effect(ABC):
@@ -25,7 +29,7 @@ class Effect(ABC):
 
     A subclass is a frozen dataclass with slots whose fields are the keys of ``[[effect]]``: floats or tuples of floats,
     whose defaults are neutral. It states `name`, `parameters` (in the order of the fields, a tuple's entries one by
-    one), `source`, and `act`.
+    one) and `act`, and its docstring has a paragraph ``Source: ...``.
 
     Attributes
     ----------
@@ -34,7 +38,7 @@ class Effect(ABC):
     parameters
         Its numbers.
     source
-        Where its equation comes from.
+        Where its equation comes from: what the docstring says, unless the class states it itself.
     longest_step_s
         The longest step that resolves it, s; infinite where it makes nothing faster.
 
@@ -48,6 +52,14 @@ class Effect(ABC):
     parameters: ClassVar[tuple[Parameter, ...]]
     source: ClassVar[str]
     longest_step_s: ClassVar[float] = inf
+
+    @classmethod
+    def __init_subclass__(cls, **options: Any) -> None:
+        # The decorator with slots makes the class again, by when `super()` without arguments knows another one.
+        super(Effect, cls).__init_subclass__(**options)
+        stated = _SOURCE.search(cls.__doc__ or "")
+        if "source" not in cls.__dict__ and stated is not None:
+            cls.source = " ".join(stated[1].split()).removesuffix(".")
 
     def __post_init__(self) -> None:
         for f in fields(self):

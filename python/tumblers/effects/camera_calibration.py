@@ -23,6 +23,8 @@ class CameraCalibration(Effect):
     Both compose with the nominal camera's. The motion itself stays the same, bit for bit. Not modelled: distortion of
     the lens, a camera that looks down at an angle, a time base that is off.
 
+    Source: arithmetic; a ruler read wrongly, a camera turned in its mount.
+
     Attributes
     ----------
     scale
@@ -45,7 +47,6 @@ class CameraCalibration(Effect):
             meaning="angle by which what is seen is turned about +z",
         ),
     )
-    source: ClassVar[str] = "arithmetic; a ruler read wrongly, a camera turned in its mount"
     scale: float = 1.0
     heading_deg: float = 0.0
 

@@ -33,7 +33,7 @@ from .substrate_tilt import SubstrateTilt
 from .surface_roughness import SurfaceRoughness
 from .viscous_drag import ViscousDrag
 
-__all__ = ["CATALOGUE", "effects_from_tables", "get", "load_file", "register"]
+__all__ = ["CATALOGUE", "effects_from_tables", "file_of", "get", "load_file", "register"]
 
 CATALOGUE: dict[str, type[Effect]] = {
     effect.name: effect
@@ -146,6 +146,17 @@ def load_file(path: str | PathLike[str]) -> tuple[type[Effect], ...]:
     CATALOGUE.update(added)
     _LOADED[path.resolve()] = effects
     return effects
+
+
+def file_of(effect: type[Effect]) -> Path | None:
+    """Return the file that `load_file` has an effect from; None for one that it did not load.
+
+    Parameters
+    ----------
+    effect
+        The class.
+    """
+    return next((path for path, effects in _LOADED.items() if effect in effects), None)
 
 
 def _effects_of(path: Path, name: str) -> tuple[type[Effect], ...]:

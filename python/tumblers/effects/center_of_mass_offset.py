@@ -27,6 +27,8 @@ class CenterOfMassOffset(Effect):
 
     An offset along the axis about which the body turns (x, for one that tumbles forward) is not seen in its motion.
 
+    Source: arithmetic; magnetic powder settles before the polymer is cured.
+
     Attributes
     ----------
     offset_m
@@ -45,7 +47,6 @@ class CenterOfMassOffset(Effect):
             key="offset_m[2]", neutral=0.0, low=-8e-05, high=8e-05, unit="m", meaning="offset along z of the body"
         ),
     )
-    source: ClassVar[str] = "arithmetic; magnetic powder settles before the polymer is cured"
     offset_m: Vector = (0.0, 0.0, 0.0)
 
     @classmethod

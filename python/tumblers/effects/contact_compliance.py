@@ -23,6 +23,8 @@ class ContactCompliance(Effect):
     One spring without damping for the whole contact. Not modelled: a stiffness that grows with the area that touches,
     losses in the material, and a patch that grows with the load (see `line_contact_adhesion`).
 
+    Source: Hooke.
+
     Attributes
     ----------
     compliance_m_per_N
@@ -41,7 +43,6 @@ class ContactCompliance(Effect):
             least=0.0,
         ),
     )
-    source: ClassVar[str] = "Hooke"
     # A body of 40 µg on 1 m/N bounces within a millisecond.
     longest_step_s: ClassVar[float] = 1.25e-4
     compliance_m_per_N: float = 0.0

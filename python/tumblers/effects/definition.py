@@ -37,7 +37,9 @@ def check_definition(effect: object) -> type[Effect]:
         raise InputError(name, "no method `act`", "one that returns the scenario with the effect in it")
     source = getattr(effect, "source", None)
     if not isinstance(source, str):
-        raise InputError(f"{name}.source", show(source), "where its equation comes from")
+        raise InputError(
+            f"{name}.source", show(source), "where its equation comes from, a paragraph `Source: ...` of the docstring"
+        )
     parameters = getattr(effect, "parameters", ())
     if not parameters or not all(isinstance(p, Parameter) for p in parameters):
         raise InputError(f"{name}.parameters", show(parameters), "a tuple of Parameter")

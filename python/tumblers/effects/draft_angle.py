@@ -28,6 +28,8 @@ class DraftAngle(Effect):
     Where the density is given instead of the mass, or no magnetic volume, these follow the smaller body. Not modelled:
     a taper that differs between faces, or towards -x. A hull and an ellipsoid take no draft.
 
+    Source: Xie, Bi, Cappelleri, Chakraborty: draft of the sides from two-photon lithography and moulding.
+
     Attributes
     ----------
     draft_deg
@@ -45,9 +47,6 @@ class DraftAngle(Effect):
             meaning="added draft of the sides",
             least=0.0,
         ),
-    )
-    source: ClassVar[str] = (
-        "Xie, Bi, Cappelleri, Chakraborty: draft of the sides from two-photon lithography and moulding"
     )
     draft_deg: float = 0.0
 

@@ -27,6 +27,8 @@ class EddyCurrentDrag(Effect):
     M² and falls with the height, seldom of the sheet itself. Not modelled: a sheet thick beside the height, the lift,
     and the torque due to translation.
 
+    Source: Reitz 1970, J. Appl. Phys. 41, 2067: Maxwell's receding images in a thin sheet.
+
     Attributes
     ----------
     sheet_conductance_S
@@ -45,7 +47,6 @@ class EddyCurrentDrag(Effect):
             least=0.0,
         ),
     )
-    source: ClassVar[str] = "Reitz 1970, J. Appl. Phys. 41, 2067: Maxwell's receding images in a thin sheet"
     sheet_conductance_S: float = 0.0
 
     @classmethod

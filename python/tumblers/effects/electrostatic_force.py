@@ -24,6 +24,8 @@ class ElectrostaticForce(Effect):
     It acts at the mass centre, whatever the pose, as in the paper. Not modelled: charge that decays, or an attraction
     that depends on the gap or the pose.
 
+    Source: Xie, Bi, Cappelleri, Chakraborty: F_elect of paper, in the text and in the released code, differs fivefold.
+
     Attributes
     ----------
     added_force_N
@@ -36,9 +38,6 @@ class ElectrostaticForce(Effect):
         Parameter(
             key="added_force_N", neutral=0.0, low=-1e-06, high=1e-06, unit="N", meaning="force added to the attraction"
         ),
-    )
-    source: ClassVar[str] = (
-        "Xie, Bi, Cappelleri, Chakraborty: F_elect of paper, in the text and in the released code, differs fivefold"
     )
     added_force_N: float = 0.0
 

@@ -23,6 +23,8 @@ class FieldEllipticity(Effect):
 
     A static or tabulated field is left as it is. Not modelled: harmonics, an offset of the field, a turned axis.
 
+    Source: arithmetic; coil pairs of different size and current have different gain and lag.
+
     Attributes
     ----------
     amplitude_ratio
@@ -51,7 +53,6 @@ class FieldEllipticity(Effect):
             meaning="lead of the second phase over 90°",
         ),
     )
-    source: ClassVar[str] = "arithmetic; coil pairs of different size and current have different gain and lag"
     amplitude_ratio: float = 1.0
     phase_error_deg: float = 0.0
 

@@ -26,6 +26,8 @@ class FieldRolloff(Effect):
     the start of the cycle, coils of different τ (see `field_ellipticity`), and the transient when the field is switched
     on.
 
+    Source: the first-order circuit L dI/dt + R I = U.
+
     Attributes
     ----------
     time_constant_s
@@ -44,7 +46,6 @@ class FieldRolloff(Effect):
             least=0.0,
         ),
     )
-    source: ClassVar[str] = "the first-order circuit L dI/dt + R I = U"
     time_constant_s: float = 0.0
 
     @classmethod

@@ -23,6 +23,8 @@ class FrictionAnisotropy(Effect):
     The axes are those of the substrate (a grain, scratches), x and y. Not modelled: axes at another angle, or axes that
     turn with the robot. Where nothing spins, both factors together are the same as a factor of μ.
 
+    Source: Goyal, Ruina, Papadopoulos 1991, Wear 143, 307; the friction ellipsoid of the paper.
+
     Attributes
     ----------
     e_t_factor, e_o_factor
@@ -50,7 +52,6 @@ class FrictionAnisotropy(Effect):
             above=0.0,
         ),
     )
-    source: ClassVar[str] = "Goyal, Ruina, Papadopoulos 1991, Wear 143, 307; the friction ellipsoid of the paper"
     e_t_factor: float = 1.0
     e_o_factor: float = 1.0
 

@@ -22,6 +22,8 @@ class FrictionCoefficient(Effect):
 
     Not modelled: friction that differs between rest and sliding, with the speed, with time or with the place.
 
+    Source: Coulomb; Xie, Bi, Cappelleri, Chakraborty: μ from tilting the substrate until the robot slides.
+
     Attributes
     ----------
     factor
@@ -39,9 +41,6 @@ class FrictionCoefficient(Effect):
             meaning="coefficient over the nominal one",
             least=0.0,
         ),
-    )
-    source: ClassVar[str] = (
-        "Coulomb; Xie, Bi, Cappelleri, Chakraborty: μ from tilting the substrate until the robot slides"
     )
     factor: float = 1.0
 

@@ -23,6 +23,9 @@ class LineContactAdhesion(Effect):
     It comes from an edge that is rounded or a substrate that gives way. Not modelled: a strip that depends on the load
     or on the angle of the edge; a point in contact has no adhesion.
 
+    Source: Johnson, Kendall, Roberts 1971, Proc. R. Soc. A 324, 301, for the strip; the paper's climb of 30° on
+    aluminium.
+
     Attributes
     ----------
     width_m
@@ -40,9 +43,6 @@ class LineContactAdhesion(Effect):
             meaning="width of the strip that holds on",
             least=0.0,
         ),
-    )
-    source: ClassVar[str] = (
-        "Johnson, Kendall, Roberts 1971, Proc. R. Soc. A 324, 301, for the strip; the paper's climb of 30° on aluminium"
     )
     width_m: float = 0.0
 

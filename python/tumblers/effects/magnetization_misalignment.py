@@ -25,6 +25,8 @@ class MagnetizationMisalignment(Effect):
     u is the nominal axis in the body frame; where it is +y, u' is the paper's own axis with errors. Not modelled: an
     axis that differs within the body, or one that the field turns.
 
+    Source: Xie, Bi, Cappelleri, Chakraborty: magnetization errors in manufacturing.
+
     Attributes
     ----------
     theta1_deg
@@ -53,7 +55,6 @@ class MagnetizationMisalignment(Effect):
             turns=True,
         ),
     )
-    source: ClassVar[str] = "Xie, Bi, Cappelleri, Chakraborty: magnetization errors in manufacturing"
     theta1_deg: float = 0.0
     theta2_deg: float = 0.0
 

@@ -22,6 +22,8 @@ class MagnetizationStrength(Effect):
 
     Not modelled: a moment that grows with the field (a soft or unsaturated magnet).
 
+    Source: Xie, Bi, Cappelleri, Chakraborty: the robots' |E| differs more than threefold between batches.
+
     Attributes
     ----------
     factor
@@ -33,9 +35,6 @@ class MagnetizationStrength(Effect):
         Parameter(
             key="factor", neutral=1.0, low=0.4, high=1.6, unit="1", meaning="moment over the nominal one", least=0.0
         ),
-    )
-    source: ClassVar[str] = (
-        "Xie, Bi, Cappelleri, Chakraborty: the robots' |E| differs more than threefold between batches"
     )
     factor: float = 1.0
 

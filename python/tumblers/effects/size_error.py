@@ -29,6 +29,8 @@ class SizeError(Effect):
     (R' - r') cos α' = height_factor (R - r) cos α. A mass and a magnetic volume that are given stay; where they follow
     from the shape they follow it. Not modelled: rounded edges, a width error.
 
+    Source: arithmetic; Xie, Bi, Cappelleri, Chakraborty: the speed follows 2(L + H)f.
+
     Attributes
     ----------
     length_factor, height_factor
@@ -56,7 +58,6 @@ class SizeError(Effect):
             above=0.0,
         ),
     )
-    source: ClassVar[str] = "arithmetic; Xie, Bi, Cappelleri, Chakraborty: the speed follows 2(L + H)f"
     length_factor: float = 1.0
     height_factor: float = 1.0
 

@@ -30,6 +30,8 @@ class StrayFieldGradient(Effect):
     modelled: the force's swing within a cycle, a gradient that varies over the workspace, and that of Maxwell's
     equations between its components.
 
+    Source: Xie, Bi, Cappelleri, Chakraborty: faster than the model at 15 Hz, stray gradients suspected; F = ∇(M · B).
+
     Attributes
     ----------
     gradient_T_per_m
@@ -58,9 +60,6 @@ class StrayFieldGradient(Effect):
             meaning="power of the frequency that the pull grows with",
             least=0.0,
         ),
-    )
-    source: ClassVar[str] = (
-        "Xie, Bi, Cappelleri, Chakraborty: faster than the model at 15 Hz, stray gradients suspected; F = ∇(M · B)"
     )
     gradient_T_per_m: Vector = (0.0, 0.0, 0.0)
     frequency_exponent: float = 0.0

@@ -23,6 +23,8 @@ class SubstrateTilt(Effect):
     The field's directions stay fixed to the substrate. Not modelled: a field that stays level while the substrate
     leans, or a slope that changes between trials.
 
+    Source: arithmetic; a stage that was not levelled.
+
     Attributes
     ----------
     slope_x_deg, slope_y_deg
@@ -34,7 +36,6 @@ class SubstrateTilt(Effect):
         Parameter(key="slope_x_deg", neutral=0.0, low=-10.0, high=10.0, unit="degrees", meaning="added slope along +x"),
         Parameter(key="slope_y_deg", neutral=0.0, low=-10.0, high=10.0, unit="degrees", meaning="added slope along +y"),
     )
-    source: ClassVar[str] = "arithmetic; a stage that was not levelled"
     slope_x_deg: float = 0.0
     slope_y_deg: float = 0.0
 

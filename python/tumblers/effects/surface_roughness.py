@@ -32,6 +32,8 @@ class SurfaceRoughness(Effect):
     one of another wavelength is refused. Not modelled: heights that vary along x, bumps shorter than the robot or on
     which it stands on two points, and roughness that only changes friction (see `friction_coefficient`).
 
+    Source: Fourier series of a height profile; the roughness of paper is some 10 µm over 1 mm.
+
     Attributes
     ----------
     wavelength_m
@@ -64,7 +66,6 @@ class SurfaceRoughness(Effect):
         Parameter(key="sine_m[1]", neutral=0.0, low=-2e-05, high=2e-05, unit="m", meaning="sine amplitude of wave 2"),
         Parameter(key="sine_m[2]", neutral=0.0, low=-2e-05, high=2e-05, unit="m", meaning="sine amplitude of wave 3"),
     )
-    source: ClassVar[str] = "Fourier series of a height profile; the roughness of paper is some 10 µm over 1 mm"
     wavelength_m: float = 2.0e-3
     cosine_m: Vector = (0.0, 0.0, 0.0)
     sine_m: Vector = (0.0, 0.0, 0.0)

@@ -25,6 +25,8 @@ class ViscousDrag(Effect):
     η is the viscosity, and a half of the geometric mean of the body's three extents. Both add to the nominal drags. Not
     modelled: the body's form, the nearness of the substrate (which raises both), buoyancy, and inertia of the fluid.
 
+    Source: Stokes 1851, Trans. Camb. Phil. Soc. 9, 8; Lamb, Hydrodynamics, §334 and §337.
+
     Attributes
     ----------
     viscosity_Pa_s
@@ -43,7 +45,6 @@ class ViscousDrag(Effect):
             least=0.0,
         ),
     )
-    source: ClassVar[str] = "Stokes 1851, Trans. Camb. Phil. Soc. 9, 8; Lamb, Hydrodynamics, §334 and §337"
     viscosity_Pa_s: float = 0.0
 
     @classmethod
