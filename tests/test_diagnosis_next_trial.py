@@ -1,20 +1,40 @@
 from __future__ import annotations
 
+from collections import Counter
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from tumblers.dataset import Dataset, LabTrial, Outcome, load
+from tumblers.diagnosis.attribute import attribute
 from tumblers.diagnosis.candidate import Candidate, candidates
-from tumblers.diagnosis.next_trial import next_trials
-from tumblers.diagnosis.simulator import Simulator
+from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.estimate import samples
+from tumblers.diagnosis.fit import Fitter
+from tumblers.diagnosis.next_trial import _foretold, _information, next_trials
+from tumblers.diagnosis.result import NextTrial
+from tumblers.diagnosis.simulator import Job, Simulator
 from tumblers.effects import get
 from tumblers.effects.base import Effect
 from tumblers.field import RotatingField, StaticField, field_from_table
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "aluminium_30deg"
-Hypotheses = list[tuple[tuple[str, ...], list[tuple[Effect, ...]]]]
+FRICTION, STRIP = "friction_coefficient", "line_contact_adhesion"
+DRIVE = RotatingField(strength_T=0.02, frequency_Hz=1.0)
+Draws = tuple[tuple[Effect, ...], ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Tie:
+    """The paper's tie: draws of both causes by name and seed."""
+
+    simulator: Simulator
+    draws: dict[tuple[str, int], Draws]
+
+    def of(self, *chosen: tuple[str, int]) -> list[tuple[tuple[str, ...], Draws]]:
+        return [((name,), self.draws[name, seed]) for name, seed in chosen]
 
 
 @pytest.fixture(scope="module")
@@ -22,25 +42,76 @@ def dataset() -> Dataset:
     return load(EXAMPLE)
 
 
-def samples(name: str, low: float, high: float) -> tuple[tuple[str, ...], list[tuple[Effect, ...]]]:
-    return (name,), [(get(name).from_vector((float(value),)),) for value in np.linspace(low, high, 5)]
+@pytest.fixture(scope="module")
+def tie(dataset: Dataset) -> Tie:
+    simulator = Simulator(dataset, 2)
+    comparison = Comparison(dataset, simulator)
+    found = attribute(comparison, [get(FRICTION), get(STRIP)])
+    alone = {contender.names: contender for contender in found.contenders}
+    draws = {
+        (name, seed): samples(Fitter(comparison), found, alone[name,], 32, seed)
+        for name in (FRICTION, STRIP)
+        for seed in (0, 1)
+    }
+    return Tie(simulator, draws)
 
 
-TIED: Hypotheses = [samples("line_contact_adhesion", 2e-6, 9e-6), samples("friction_coefficient", 1.08, 1.4)]
+@pytest.fixture(scope="module")
+def proposed(dataset: Dataset, tie: Tie) -> tuple[NextTrial, ...]:
+    return next_trials(dataset, tie.simulator, tie.of((FRICTION, 0), (STRIP, 0)), seed=1)
 
 
-def test_the_papers_tie_is_broken(dataset: Dataset) -> None:
-    proposed = next_trials(dataset, Simulator(dataset, 2), TIED, seed=1)
-    assert proposed[0].information_bits > 0.3
-    # The first is within what the lab has done, though others tell more.
+def information(dataset: Dataset, tie: Tie, slope: float, *chosen: tuple[str, int]) -> float:
+    """Return what a trial on a slope tells of hypotheses of equal odds, bits."""
+    option = Candidate(field=DRIVE, incline_deg=slope, duration_s=2.0)
+    run = []
+    for _, draws in tie.of(*chosen):
+        times = Counter(draws)
+        paths = tie.simulator.run([Job(0, effects, edit=option.edit) for effects in times])
+        run.append(list(zip(times.values(), paths, strict=True)))
+    foretold = _foretold(dataset, tie.simulator, option, run)
+    assert foretold is not None
+    return _information(foretold, np.full(len(chosen), 1.0 / len(chosen)), seed=0)
+
+
+def test_draws_do_not_contradict_what_was_seen(tie: Tie) -> None:
+    # Below about 1.07 the nominal friction does not hold the robot at 30°, from about 2 up it climbs 45°.
+    for seed in (0, 1):
+        factors = [effect.vector()[0] for (effect,) in tie.draws[FRICTION, seed]]
+        # A wrong note of 1 % in each of two outcomes, and a border that is blurred.
+        assert sum(not 1.05 < factor < 2.1 for factor in factors) <= 2
+        assert len(set(factors)) > 16
+        assert max(factors) - min(factors) > 0.4
+
+
+def test_draws_depend_on_the_seed_alone(dataset: Dataset, tie: Tie) -> None:
+    assert tie.draws[FRICTION, 0] != tie.draws[FRICTION, 1]
+    comparison = Comparison(dataset, Simulator(dataset, 1))
+    found = attribute(comparison, [get(FRICTION), get(STRIP)])
+    (best,) = (contender for contender in found.contenders if contender.names == (FRICTION,))
+    assert samples(Fitter(comparison), found, best, 32, 0) == tie.draws[FRICTION, 0]
+
+
+def test_the_papers_tie_is_broken(dataset: Dataset, proposed: tuple[NextTrial, ...]) -> None:
+    first = proposed[0]
+    # Of a yes or no of 50 and 15 %, 0.11 bit could be learnt at best; speeds add to it.
+    assert first.information_bits > 0.1
+    assert first.within_ranges
     slopes = [trial.incline_deg for trial in dataset.trials]
-    first = proposed[0].trial
-    assert min(slopes) <= first["incline_deg"] <= max(slopes)
-    assert (first["field"]["frequency_Hz"], first["field"]["strength_T"]) == (1.0, 0.02)
-    assert all(set(p.predictions) == {"line_contact_adhesion", "friction_coefficient"} for p in proposed)
-    assert all("separates line_contact_adhesion from friction_coefficient" in p.why for p in proposed)
+    assert min(slopes) < first.trial["incline_deg"] < max(slopes)
+    assert (first.trial["field"]["frequency_Hz"], first.trial["field"]["strength_T"]) == (1.0, 0.02)
+    assert first.why.startswith(f"separates {FRICTION} from {STRIP} (")
+    for name in (FRICTION, STRIP):
+        said = first.predictions[name]
+        assert said["climbs"][0] + said["slides_away"][0] == pytest.approx(1.0, abs=0.1)
+        # The speed of a robot that slides out of view is nobody's prediction.
+        assert abs(said["mean_speed_m_per_s"][0]) < 2e-3
+        assert f"{name} climbs" in first.why
+        assert "slides away" in first.why
+
+
+def test_what_is_proposed_can_be_added_to_the_dataset(proposed: tuple[NextTrial, ...]) -> None:
     for p in proposed:
-        # What a dataset takes as a [[trial]].
         LabTrial(
             id="next",
             field=field_from_table(p.trial["field"], Path()),
@@ -50,41 +121,76 @@ def test_the_papers_tie_is_broken(dataset: Dataset) -> None:
         )
 
 
+def test_at_most_the_last_is_beyond_what_was_done_and_says_so(proposed: tuple[NextTrial, ...]) -> None:
+    assert all(p.within_ranges for p in proposed[:-1])
+    for p in proposed:
+        assert ("beyond what was done so far" in p.why) == (not p.within_ranges)
+
+
+# Where half of the draws climb, and where nearly all or none do.
+@pytest.mark.parametrize("slope", [30.0, 32.0, 34.0, 36.0, 38.0, 45.0])
+def test_one_hypothesis_drawn_twice_has_next_to_nothing_to_tell_apart(dataset: Dataset, tie: Tie, slope: float) -> None:
+    for name in (FRICTION, STRIP):
+        assert information(dataset, tie, slope, (name, 0), (name, 1)) < 0.02
+        assert information(dataset, tie, slope, (name, 0), (name, 0)) == 0.0
+
+
+def test_another_seed_finds_about_the_same_information(dataset: Dataset, tie: Tie) -> None:
+    found = [information(dataset, tie, 37.0, (FRICTION, a), (STRIP, b)) for a in (0, 1) for b in (0, 1)]
+    # Of 32 draws a share of a half is known to within a tenth.
+    assert max(found) - min(found) < 0.15
+    assert min(found) > 0.02
+
+
+def test_less_than_two_hypotheses_have_no_next_trial(dataset: Dataset, tie: Tie) -> None:
+    assert next_trials(dataset, tie.simulator, tie.of((FRICTION, 0)), seed=1) == ()
+
+
 def test_a_seed_gives_the_same_trials_on_any_number_of_threads(
-    dataset: Dataset, monkeypatch: pytest.MonkeyPatch
+    dataset: Dataset, tie: Tie, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    field = RotatingField(strength_T=0.02, frequency_Hz=10.0)
-    few = tuple(Candidate(field=field, incline_deg=slope, duration_s=0.5) for slope in (10.0, 20.0))
+    few = tuple(Candidate(field=DRIVE, incline_deg=slope, duration_s=1.0) for slope in (30.0, 37.0, 45.0))
     monkeypatch.setattr("tumblers.diagnosis.next_trial.candidates", lambda *_: few)
-    first, second = (next_trials(dataset, Simulator(dataset, threads), TIED, seed=1) for threads in (1, 2))
+    both = tie.of((FRICTION, 0), (STRIP, 0))
+    first, second = (next_trials(dataset, Simulator(dataset, threads), both, seed=1) for threads in (1, 2))
     assert first
     assert [(p.why, p.information_bits) for p in first] == [(p.why, p.information_bits) for p in second]
 
 
-def test_the_same_hypothesis_twice_has_nothing_to_tell_apart(dataset: Dataset, monkeypatch: pytest.MonkeyPatch) -> None:
-    few = (Candidate(field=RotatingField(strength_T=0.02, frequency_Hz=1.0), incline_deg=25.0, duration_s=1.0),)
-    monkeypatch.setattr("tumblers.diagnosis.next_trial.candidates", lambda *_: few)
-    simulator = Simulator(dataset, 2)
-    assert next_trials(dataset, simulator, [TIED[1], TIED[1]], seed=1) == ()
-    assert next_trials(dataset, simulator, TIED[:1], seed=1) == ()
-
-
-def test_candidates_stay_within_what_the_lab_did(dataset: Dataset) -> None:
-    options = candidates(dataset, 90)
-    assert 20 <= len(options) <= 90
+def test_candidates_know_what_the_lab_did(dataset: Dataset) -> None:
+    options = candidates(dataset, 40)
+    assert 20 <= len(options) <= 40
     assert len(set(options)) == len(options)
     for option in options:
-        assert option.field.strength_T <= 0.020
-        assert 0.0 <= option.incline_deg <= 55.0
+        left = set(option.outside)
         assert option.duration_s <= 4.0
-        if isinstance(option.field, RotatingField):
-            assert option.field.frequency_Hz == 1.0 or option.faster
-    assert any(isinstance(option.field, StaticField) for option in options)
+        assert option.field.strength_T <= 0.020
+        if isinstance(option.field, StaticField):
+            # No trial of this lab was in a static field.
+            assert left == {"static field"}
+        else:
+            # The lab's slopes are 20 to 45°, its field 20 mT at 1 Hz.
+            assert ("slope" in left) == (not 20.0 <= option.incline_deg <= 45.0)
+            assert ("frequency" in left) == (option.field.frequency_Hz != 1.0)
+            assert ("field strength" in left) == (option.field.strength_T != 0.020)
+    assert sum(not option.outside for option in options) >= 3
     assert len(candidates(dataset, 12)) == 12
 
 
-def test_slopes_are_refined_between_the_next_ones(dataset: Dataset) -> None:
-    field = RotatingField(strength_T=0.02, frequency_Hz=1.0)
-    row = [Candidate(field=field, incline_deg=slope, duration_s=1.0) for slope in (30.0, 34.0, 38.0)]
+def test_a_static_field_that_was_used_is_within_its_range(dataset: Dataset) -> None:
+    def tilted(name: str, strength: float) -> LabTrial:
+        field = StaticField(strength_T=strength, direction=(0.0, 0.0, 1.0))
+        return LabTrial(id=name, field=field, duration_s=1.0, outcome=Outcome(tilt_deg=30.0, sigma_deg=1.0))
+
+    known = replace(dataset, trials=(*dataset.trials, tilted("weak", 0.004), tilted("strong", 0.010)))
+    found = [option for option in candidates(known, 60) if isinstance(option.field, StaticField)]
+    assert [option.field.strength_T for option in found] == [0.004, 0.007, 0.010]
+    assert not any(option.outside for option in found)
+
+
+def test_slopes_are_refined_between_the_next_ones() -> None:
+    row = [Candidate(field=DRIVE, incline_deg=slope, duration_s=1.0) for slope in (30.0, 34.0)]
+    row.append(Candidate(field=DRIVE, incline_deg=38.0, duration_s=1.0, outside=("slope",)))
     finer = row[1].steeper_and_flatter(row)
     assert [c.incline_deg for c in finer] == [31.0, 32.0, 33.0, 35.0, 36.0, 37.0]
+    assert [c.outside for c in finer] == [(), (), (), ("slope",), ("slope",), ("slope",)]

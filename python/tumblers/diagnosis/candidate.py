@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..dataset import Dataset
+from ..dataset import Dataset, LabTrial
 from ..field import RotatingField, StaticField, field_to_table
 from ..scenario import Scenario
 
@@ -40,25 +40,22 @@ class Candidate:
         Slope along +y, degrees.
     duration_s
         Time, s.
-    faster
-        Whether the field rotates faster than in any trial so far.
     outside
-        Whether it leaves the ranges of the trials so far: faster, in a weaker field, or on a steeper slope.
+        In what it leaves the ranges of the trials so far: ``frequency``, ``field strength``, ``slope``, or
+        ``static field``.
     """
 
     field: RotatingField | StaticField
     incline_deg: float
     duration_s: float
-    faster: bool = False
-    outside: bool = False
+    outside: tuple[str, ...] = ()
 
     @property
     def kind(self) -> str:
         """What sort of test it is; two of one kind would show much the same."""
         if isinstance(self.field, StaticField):
             return "static tilt"
-        place = "slope" if self.incline_deg != 0.0 else f"run {self.field.rotation_axis}"
-        return f"fast {place}" if self.faster else place
+        return "slope" if self.incline_deg != 0.0 else f"run {self.field.rotation_axis}"
 
     def steeper_and_flatter(self, others: Sequence[Candidate]) -> tuple[Candidate, ...]:
         """Return this trial on slopes between its own and the next ones, to half a degree.
@@ -73,8 +70,20 @@ class Candidate:
         high = min((s for s in slopes if s > self.incline_deg), default=self.incline_deg)
         between = [end + share * (self.incline_deg - end) for end in (low, high) for share in (0.25, 0.5, 0.75)]
         found = sorted({round(2.0 * slope) / 2.0 for slope in between} - slopes)
-        steepest = max((other.incline_deg for other in others if not other.outside), default=self.incline_deg)
-        return tuple(replace(self, incline_deg=slope, outside=self.outside or slope > steepest) for slope in found)
+        used = [
+            other.incline_deg
+            for other in others
+            if "slope" not in other.outside and type(other.field) is type(self.field)
+        ]
+        return tuple(
+            replace(self, incline_deg=slope, outside=self._on(min(used) <= slope <= max(used) if used else False))
+            for slope in found
+        )
+
+    def _on(self, used: bool) -> tuple[str, ...]:
+        """Return `outside` on a slope within what was used, or not."""
+        others = tuple(name for name in self.outside if name != "slope")
+        return others if used else (*others, "slope")
 
     def edit(self, scenario: Scenario) -> Scenario:
         """Return a scenario under these conditions, its step no longer than the field allows.
@@ -106,16 +115,33 @@ class Candidate:
         }
         return {"incline_deg": self.incline_deg, "duration_s": self.duration_s, "field": field}
 
-    def words(self) -> str:
-        """Return the conditions in words."""
-        strength = f"{1e3 * self.field.strength_T:.3g} mT"
-        if isinstance(self.field, StaticField):
-            return f"in a static field of {strength} along ({', '.join(f'{v:.2g}' for v in self.field.direction)})"
-        way = "" if self.field.rotation_axis == (-1.0, 0.0, 0.0) else " the other way round"
-        slope = f"up a slope of {self.incline_deg:.3g}°" if self.incline_deg else "on the level"
-        return f"{slope}, {strength} at {self.field.frequency_Hz:.3g} Hz{way}" + (
-            " (faster than in any trial so far)" if self.faster else ""
+
+@dataclass(frozen=True, slots=True)
+class _Ranges:
+    """The field strength, frequency and slope from the least to the greatest of some trials."""
+
+    strength_T: tuple[float, float]
+    frequency_Hz: tuple[float, float]
+    incline_deg: tuple[float, float]
+
+    @classmethod
+    def of(cls, trials: Sequence[LabTrial]) -> _Ranges:
+        strengths, frequencies = [], []
+        for trial in trials:
+            assert isinstance(trial.field, RotatingField | StaticField)
+            strengths.append(trial.field.strength_T)
+            frequencies.append(trial.field.frequency_Hz if isinstance(trial.field, RotatingField) else 0.0)
+        slopes = [trial.incline_deg for trial in trials]
+        return cls(*((min(values), max(values)) for values in (strengths, frequencies, slopes)))
+
+    def left(self, strength_T: float, frequency_Hz: float, incline_deg: float) -> tuple[str, ...]:
+        """Return the names of the ranges that are left."""
+        pairs = (
+            ("frequency", frequency_Hz, self.frequency_Hz),
+            ("field strength", strength_T, self.strength_T),
+            ("slope", incline_deg, self.incline_deg),
         )
+        return tuple(name for name, value, (low, high) in pairs if not low <= value <= high)
 
 
 def candidates(dataset: Dataset, most: int) -> tuple[Candidate, ...]:
@@ -128,16 +154,17 @@ def candidates(dataset: Dataset, most: int) -> tuple[Candidate, ...]:
     most
         So many at most.
     """
-    rotating = [t.field for t in dataset.trials if isinstance(t.field, RotatingField)]
-    static = [t.field for t in dataset.trials if isinstance(t.field, StaticField)]
+    rolled = [t for t in dataset.trials if isinstance(t.field, RotatingField)]
+    tilted = [t for t in dataset.trials if isinstance(t.field, StaticField)]
+    rotating = [t.field for t in rolled if isinstance(t.field, RotatingField)]
+    static = [t.field for t in tilted if isinstance(t.field, StaticField)]
     longest = min(_MOST_S, max(t.duration_s for t in dataset.trials))
     runs: list[Candidate] = []
     tilts: list[Candidate] = []
     if rotating:
+        ranges = _Ranges.of(rolled)
         axes = {(f.rotation_axis, f.initial_direction): f for f in rotating}
-        fastest = max(f.frequency_Hz for f in rotating)
-        inclines = _inclines(t.incline_deg for t in dataset.trials)
-        steepest = max(t.incline_deg for t in dataset.trials)
+        inclines = _inclines(t.incline_deg for t in rolled)
         used = sorted({f.strength_T for f in rotating})
         # Coils that give one strength also give half of it.
         strengths = _some(used if len(used) > 1 else [_rounded(0.5 * used[0]), *used], _MOST_STRENGTHS)
@@ -146,15 +173,12 @@ def candidates(dataset: Dataset, most: int) -> tuple[Candidate, ...]:
                 for axis in axes.values():
                     field = replace(axis, frequency_Hz=frequency, strength_T=strength)
                     time = round(min(longest, max(_LEAST_S, _CYCLES / frequency)), 3)
-                    faster = frequency > fastest
-                    beyond = faster or strength < used[0]
                     runs += [
                         Candidate(
                             field=field,
                             incline_deg=slope,
                             duration_s=time,
-                            faster=faster,
-                            outside=beyond or slope > steepest,
+                            outside=ranges.left(strength, frequency, slope),
                         )
                         for slope in inclines
                     ]
@@ -163,18 +187,28 @@ def candidates(dataset: Dataset, most: int) -> tuple[Candidate, ...]:
         used = sorted({f.strength_T for f in static if f.direction == direction})
         if used:
             between = [0.5 * (a + b) for a, b in pairwise(used)]
-            levels = _some(sorted([*used, *between]), _MOST_STATIC)
+            levels = _some(sorted([*used, *(_rounded(level) for level in between)]), _MOST_STATIC)
+            outside = _Ranges.of(tilted).left(used[0], 0.0, 0.0)
         else:
             least = min((f.strength_T for f in rotating), default=0.0)
-            levels = [float(share * least) for share in np.linspace(0.1, 1.0, _MOST_STATIC)]
+            levels = [_rounded(float(share * least)) for share in np.linspace(0.1, 1.0, _MOST_STATIC)]
+            outside = ("static field",)
         tilts += [
             Candidate(
-                field=StaticField(strength_T=_rounded(level), direction=direction), incline_deg=0.0, duration_s=still
+                field=StaticField(strength_T=level, direction=direction),
+                incline_deg=0.0,
+                duration_s=still,
+                outside=outside,
             )
             for level in levels
             if level > 0.0
         ]
-    return tuple([*_some(runs, max(1, most - len(tilts))), *tilts][:most])
+    # What the lab can do as it is comes before the rest, where not all can be looked at.
+    inside = [run for run in runs if not run.outside]
+    room = max(1, most - len(tilts))
+    kept = _some(inside, max(room // 2, room - (len(runs) - len(inside))))
+    beyond = _some([run for run in runs if run.outside], max(room - len(kept), 0))
+    return tuple([*kept, *beyond, *tilts][:most])
 
 
 def _frequencies(fields: list[RotatingField]) -> list[float]:
