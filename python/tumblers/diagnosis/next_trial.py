@@ -364,7 +364,8 @@ def _why(option: Candidate, foretold: _Foretold, labels: list[str], seed: int) -
     first = told[0][0]
     separates = _listed([f"{labels[b]} ({apart[a, b]:.2f} bit)" for a, b in told])
     alike = [labels[b] for b in range(1, len(labels)) if (0, b) not in told]
-    hardly = f", hardly {labels[0] if first else ''} from {_listed(alike)}".replace("  ", " ") if alike else ""
+    whom = "hardly" if first == 0 else f"hardly {labels[0]}"
+    hardly = f", {whom} from {_listed(alike)}" if alike else ""
     beyond = f" (beyond what was done so far in {_listed(list(option.outside))})" if option.outside else ""
     says = [f"{labels[k]} {_says(option, foretold.said[k])}" for k in (first, *(b for _, b in told))]
     return f"separates {labels[first]} from {separates}{hardly}{beyond}: {'; '.join(says)}"
