@@ -38,13 +38,15 @@ def test_a_log_gets_no_line_of_what_is_over_at_once(clock: list[float], capsys: 
     assert capsys.readouterr().err == ""
 
 
-def test_phases_are_named_from_the_start(clock: list[float], capsys: pytest.CaptureFixture[str]) -> None:
+def test_phases_are_named_every_ten_seconds(clock: list[float], capsys: pytest.CaptureFixture[str]) -> None:
     with phases(progress=True) as tell:
         tell("fitting each effect", 0, 19)
+        clock[0] += 10.0
         tell("fitting each effect", 3, 19)
+        tell("fitting each effect", 4, 19)
         clock[0] += 10.0
         tell("fitting pairs", 1, 4)
-    assert capsys.readouterr().err == "tumblers: fitting each effect 0/19\ntumblers: fitting pairs 1/4\n"
+    assert capsys.readouterr().err == "tumblers: fitting each effect 3/19\ntumblers: fitting pairs 1/4\n"
 
 
 def test_phases_go_to_a_callback_or_nowhere(capsys: pytest.CaptureFixture[str]) -> None:

@@ -74,7 +74,7 @@ def _bar(words: str, total: int) -> Iterator[OnProgress]:
     console = Console(stderr=True)
     if not console.is_terminal:
         # What is over before the first line is due needs none.
-        tell = _lines(console, monotonic() + _BETWEEN_LINES_S)
+        tell = _lines(console)
         yield lambda done: tell(words, done, total)
         return
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
@@ -104,7 +104,7 @@ def phases(progress: bool | OnPhase) -> Iterator[OnPhase]:
 
     console = Console(stderr=True)
     if not console.is_terminal:
-        yield _lines(console, monotonic())
+        yield _lines(console)
         return
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, console=console, transient=True) as bar:
@@ -112,9 +112,9 @@ def phases(progress: bool | OnPhase) -> Iterator[OnPhase]:
         yield lambda phase, done, total: bar.update(task, description=phase, completed=done, total=total)
 
 
-def _lines(console: Console, first_s: float) -> OnPhase:
-    """Return a callback that writes a plain line when one is due: the first at a time of the clock."""
-    due = first_s
+def _lines(console: Console) -> OnPhase:
+    """Return a callback that writes a plain line every ten seconds."""
+    due = monotonic() + _BETWEEN_LINES_S
 
     def tell(phase: str, done: int, total: int) -> None:
         nonlocal due
