@@ -48,7 +48,7 @@ def check_named(diagnosis: Diagnosis, truth: Effect) -> None:
     assert diagnosis.verdict == "explained"
     first = diagnosis.effects[0]
     assert first.name == truth.name
-    # A share of 6 % belongs to all hypotheses, however strong the evidence is.
+    # A share of 12 % belongs to all hypotheses, however strong the evidence is.
     assert first.probability > 0.85
     for parameter, value in zip(truth.parameters, truth.vector(), strict=True):
         interval = first.parameters[parameter.key]

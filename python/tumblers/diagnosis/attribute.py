@@ -42,7 +42,7 @@ Floats = NDArray[np.float64]
 _PRIOR = {0: 0.4, 1: 0.45, 2: 0.15}
 # How often the likeliest is wrong however strong the evidence: a form that the catalogue lacks, a minimum that no
 # search found. Shared by all, and of the order of what datasets with a known truth showed while this was developed.
-LAPSE = 0.06
+LAPSE = 0.12
 # Trial points of the last fit of the best, from where it is: intervals are no better than it.
 _LAST_POINTS = 12
 # Of equals the one with fewer parameters is preferred, then the one that the catalogue lists first.

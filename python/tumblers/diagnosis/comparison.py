@@ -43,7 +43,7 @@ _MOST_OFF = 3.0
 # A trial's track whose mean square is beyond this counts by its logarithm.
 FAR = 3.0
 # What the model itself gets wrong lasts about so long, and joins so many neighbouring numbers of a track at most.
-_ALIKE_S, _MOST_ALIKE = 0.1, 8.0
+_ALIKE_S, _MOST_ALIKE = 0.16, 8.0
 # What a trial counts that the model cannot run at all, in sigmas.
 _NOT_RUN = 30.0
 # A tolerance is two standard deviations; a clock's offset is uniform within it.
@@ -178,7 +178,7 @@ class Comparison:
 
     @property
     def alike(self) -> float:
-        """How many neighbouring numbers of the tracks count as one: those of a tenth of a second, up to eight."""
+        """How many neighbouring numbers of the tracks count as one: those of 0.16 s, up to eight."""
         tracked = [i for i, reader in enumerate(self.readers) if len(reader.observed.time_s)]
         if not tracked:
             return 1.0
