@@ -151,20 +151,19 @@ class Comparison:
         self._start()
         return True
 
-    def take_noise_of(self, *around: tuple[Effect, ...], shares: Sequence[float] | None = None) -> None:
-        """Let the noise be what moves the paths around some hypotheses; residuals compare by `log_determinant` too.
+    def take_noise_of(self, effects: tuple[Effect, ...], shares: Sequence[float] | None = None) -> None:
+        """Let the noise be what moves the paths around a hypothesis; residuals compare by `log_determinant` too.
 
         Parameters
         ----------
-        around
-            The hypotheses, no effects for the nominal model.
+        effects
+            The hypothesis, none for the nominal model.
         shares
             By trial, how much of what moves the paths counts; all of it if None.
         """
-        for effects in around:
-            if effects not in self._known:
-                self._known[effects] = measure_sensitivity(self.simulator, self.readers, effects)
-        self.floors = build_floors(self.readers, [self._known[effects] for effects in around], shares)
+        if effects not in self._known:
+            self._known[effects] = measure_sensitivity(self.simulator, self.readers, effects)
+        self.floors = build_floors(self.readers, self._known[effects], shares)
 
     @property
     def log_determinant(self) -> float:

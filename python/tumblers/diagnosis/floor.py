@@ -20,7 +20,7 @@ scheme: numbers that were themselves computed, in whatever step, are not taken f
 A strong effect can make a motion chaotic that was not, or end a chaos. Each hypothesis that counts therefore has its
 own Σ, with the changes around itself, and pays for it: a likelihood has ln det Σ beside the squares, so that nothing is
 explained by being vague; how much of the changes is needed in a trial, a share of 1 or less, its differences say
-(`Fitter.take_likeliest_noise`). For what is shown of several hypotheses together, Σ adds the changes around each.
+(`Fitter.take_likeliest_noise`).
 """
 
 from __future__ import annotations
@@ -236,7 +236,7 @@ def _in_twice(simulator: Simulator, edit: Edit) -> Edit:
 
 
 def build_floors(
-    readers: tuple[Reader, ...], around: Sequence[list[Sensitivity]], shares: Sequence[float] | None = None
+    readers: tuple[Reader, ...], moved: Sequence[Sensitivity], shares: Sequence[float] | None = None
 ) -> tuple[Floor, ...]:
     """Return the noise of each trial.
 
@@ -244,16 +244,13 @@ def build_floors(
     ----------
     readers
         Of the dataset's trials.
-    around
-        What moves the paths, by hypothesis and trial; the last one's tolerances are the fit's.
+    moved
+        By trial, what moves the path that should not.
     shares
-        By trial, how much of these changes counts as noise; all of them if None.
+        By trial, how much of these changes of a track counts as noise; all of them if None.
     """
     counted = [1.0] * len(readers) if shares is None else shares
-    return tuple(
-        _floor(reader, [each[i] for each in around], share)
-        for i, (reader, share) in enumerate(zip(readers, counted, strict=True))
-    )
+    return tuple(_floor(*each) for each in zip(readers, moved, counted, strict=True))
 
 
 def _change(reader: Reader, path: Path | None, other: Path | None) -> dict[str, Floats]:
@@ -286,7 +283,7 @@ def _around(change: Floats) -> Floats:
     return np.asarray(maximum_filter1d(np.abs(change), 3))
 
 
-def _floor(reader: Reader, around: Sequence[Sensitivity], share: float) -> Floor:
+def _floor(reader: Reader, moved: Sensitivity, share: float) -> Floor:
     observed = reader.observed
     time = np.maximum(observed.time_s, 0.0)
     whiten: dict[str, Floats] = {}
@@ -295,32 +292,28 @@ def _floor(reader: Reader, around: Sequence[Sensitivity], share: float) -> Floor
         valid[name] = observed.found(name)
         t = time[valid[name]]
         covariance = np.eye(len(t)) * observed.noise[name] ** 2
-        for each in around if len(t) else ():
-            if name in each.numerical:
-                d = share * each.numerical[name][valid[name]]
-                covariance += _ALPHA**2 * np.outer(d, d) + np.diag((_STEP_SPREAD * _around(d)) ** 2)
-                covariance += float(np.mean(d**2)) / reader.duration_s * np.minimum.outer(t, t)
-            for change in each.tolerances:
-                if name in change:
-                    covariance += np.diag((share * _TOLERANCE_SPREAD * _around(change[name][valid[name]])) ** 2)
+        if len(t) and name in moved.numerical:
+            d = share * moved.numerical[name][valid[name]]
+            covariance += _ALPHA**2 * np.outer(d, d) + np.diag((_STEP_SPREAD * _around(d)) ** 2)
+            covariance += float(np.mean(d**2)) / reader.duration_s * np.minimum.outer(t, t)
+        for change in moved.tolerances if len(t) else ():
+            if name in change:
+                covariance += np.diag((share * _TOLERANCE_SPREAD * _around(change[name][valid[name]])) ** 2)
         whiten[name] = np.linalg.inv(np.linalg.cholesky(covariance)) if len(t) else covariance
     scale = {}
     for term in reader.outcome_kinds:
-        spread = 0.0
-        for each in around:
-            spread += (_ALPHA * each.numerical_terms.get(term, 0.0)) ** 2
-            # A change beyond the noise is a threshold that was crossed: no nuisance is linear there.
-            spread += sum(max(change.get(term, 0.0) ** 2 - 1.0, 0.0) for change in each.tolerance_terms)
+        spread = (_ALPHA * moved.numerical_terms.get(term, 0.0)) ** 2
+        # A change beyond the noise is a threshold that was crossed: no nuisance is linear there.
+        spread += sum(max(change.get(term, 0.0) ** 2 - 1.0, 0.0) for change in moved.tolerance_terms)
         scale[term] = float(1.0 / np.sqrt(1.0 + spread))
-    last = around[-1]
     columns = [
         np.concatenate(
             [whiten[name] @ change.get(name, np.zeros(len(time)))[valid[name]] for name in whiten]
             + [np.array([terms.get(term, 0.0) * scale[term] for term in scale])]
         )
         for change, terms in (
-            *zip(last.tolerances, last.tolerance_terms, strict=True),
-            (last.coarse, last.coarse_terms),
+            *zip(moved.tolerances, moved.tolerance_terms, strict=True),
+            (moved.coarse, moved.coarse_terms),
         )
     ]
     return Floor(
@@ -333,6 +326,6 @@ def _floor(reader: Reader, around: Sequence[Sensitivity], share: float) -> Floor
         * float(
             sum(np.sum(np.log(np.diag(w))) for w in whiten.values()) + sum(np.log(value) for value in scale.values())
         ),
-        numerical_sigmas=max(_rms(reader, each.numerical) for each in around),
-        tolerance_sigmas=max(float(np.sqrt(sum(_rms(reader, c) ** 2 for c in each.tolerances))) for each in around),
+        numerical_sigmas=_rms(reader, moved.numerical),
+        tolerance_sigmas=float(np.sqrt(sum(_rms(reader, change) ** 2 for change in moved.tolerances))),
     )
