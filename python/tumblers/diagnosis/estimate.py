@@ -9,6 +9,7 @@ objective rises by a step, at a threshold, the way to the step is halved.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import log
 
@@ -28,6 +29,8 @@ from .result import Interval
 __all__ = ["intervals", "samples"]
 
 Floats = NDArray[np.float64]
+# By parameter and direction, how far along its ridge, in standard deviations.
+_Ways = dict[tuple[int, float], float]
 
 _SIDE = 1.645
 # A profile that is flatter or steeper than this is not trusted further in one round.
@@ -69,16 +72,23 @@ def intervals(fitter: Fitter, attribution: Attribution, contender: Contender) ->
     reach = dict.fromkeys(((j, sign) for j in range(len(fit.point)) for sign in (-1.0, 1.0)), _SIDE)
     inside = {side: _way_inside(hypothesis, fit.point, side[1] * ridges[side[0]]) for side in sides}
     sides = [side for side in sides if inside[side] > _LEAST_WAY]
-    for _ in range(_ROUNDS):
-        ways = [min(reach[side], inside[side]) for side in sides]
-        points = [fit.point + sign * way * ridges[j] for (j, sign), way in zip(sides, ways, strict=True)]
+
+    def rises(ways: _Ways) -> _Ways:
+        """Return how much the objective rises at some ways along the sides' ridges."""
+        points = [fit.point + sign * way * ridges[j] for (j, sign), way in ways.items()]
         residuals = fitter.residuals(hypothesis, points)
-        for side, way, point, residual in zip(sides, ways, points, residuals, strict=True):
-            rise = (fitter.cost(residual, point) - contender.cost) / attribution.dispersion
+        return {
+            side: (fitter.cost(residual, point) - contender.cost) / attribution.dispersion
+            for side, point, residual in zip(ways, points, residuals, strict=True)
+        }
+
+    for _ in range(_ROUNDS):
+        ways = {side: min(reach[side], inside[side]) for side in sides}
+        for side, rise in rises(ways).items():
             # What the rise should be at this way.
-            share = (way / reach[side]) ** 2
+            share = (ways[side] / reach[side]) ** 2
             reach[side] *= float(np.sqrt(_SIDE**2 / np.clip(rise / share, _LEAST_RISE, _MOST_RISE)))
-    _halved(fitter, attribution, contender, {side: ridges[side[0]] for side in sides}, inside, reach)
+    reach |= _before_steps(rises, {side: min(reach[side], inside[side]) for side in sides})
     out = {}
     estimates = hypothesis.values(fit.point)
     parameters = [parameter for kind in hypothesis.kinds for parameter in kind.parameters]
@@ -93,37 +103,15 @@ def intervals(fitter: Fitter, attribution: Attribution, contender: Contender) ->
     return out
 
 
-def _halved(
-    fitter: Fitter,
-    attribution: Attribution,
-    contender: Contender,
-    ridges: dict[tuple[int, float], Floats],
-    inside: dict[tuple[int, float], float],
-    reach: dict[tuple[int, float], float],
-) -> None:
-    """Shorten what reaches beyond a step of the objective to where the step is."""
-    assert contender.fit is not None
-    hypothesis, here = contender.fit.hypothesis, contender.fit.point
-
-    def rises(ways: dict[tuple[int, float], float]) -> dict[tuple[int, float], float]:
-        points = [here + sign * way * ridges[j, sign] for (j, sign), way in ways.items()]
-        residuals = fitter.residuals(hypothesis, points)
-        return {
-            side: (fitter.cost(residual, point) - contender.cost) / attribution.dispersion
-            for side, point, residual in zip(ways, points, residuals, strict=True)
-        }
-
-    ends = {side: min(reach[side], inside[side]) for side in ridges}
+def _before_steps(rises: Callable[[_Ways], _Ways], ends: _Ways) -> _Ways:
+    """Return the ways to where the objective rises by a step, for the ends that are beyond one."""
     below = dict.fromkeys(ends, 0.0)
-    above = {side: ends[side] for side, rise in rises(ends).items() if rise > _TOO_FAR * _SIDE**2} if ends else {}
+    above = {side: ends[side] for side, rise in rises(ends).items() if rise > _TOO_FAR * _SIDE**2}
     for _ in range(_HALVINGS if above else 0):
         middles = {side: 0.5 * (below[side] + end) for side, end in above.items()}
         for side, rise in rises(middles).items():
-            if rise > _SIDE**2:
-                above[side] = middles[side]
-            else:
-                below[side] = middles[side]
-    reach.update(above)
+            (above if rise > _SIDE**2 else below)[side] = middles[side]
+    return above
 
 
 def _gradients(hypothesis: Hypothesis, point: Floats) -> Floats:
