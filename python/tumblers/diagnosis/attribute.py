@@ -117,14 +117,8 @@ def _with_tolerated(ranked: Sequence[Contender], comparison: Comparison) -> list
     scenarios = [comparison.simulator.nominal(i) for i in range(len(comparison.readers))]
     same = [c for c in ranked if not c.names or is_tolerated(c.effects, scenarios)]
     probability, evidence = sum(c.probability for c in same), max(c.log_evidence for c in same)
-    made = [
-        c
-        if all(c is not other for other in same)
-        else replace(c, probability=0.0)
-        if c.names
-        else replace(c, probability=probability, log_evidence=evidence)
-        for c in ranked
-    ]
+    made = [replace(c, probability=0.0) if c.names and c in same else c for c in ranked]
+    made = [c if c.names else replace(c, probability=probability, log_evidence=evidence) for c in made]
     return sorted(made, key=lambda c: (-c.log_evidence, len(c.names)))
 
 

@@ -137,9 +137,8 @@ def is_foretold(fitter: Fitter, nominal: HeldOut, chosen: HeldOut, gap: Gap, bes
         return False
     if gap.after**2 <= _FORETOLD:
         return True
-    fitted = fitter.again(best.fit).residual if best.fit is not None else best.residual
     before = [fitter.trial_cost(nominal.residuals[i], i) for i in fitter.trials]
-    gains = np.array([max(cost - fitter.trial_cost(fitted, i), 0.0) for i, cost in enumerate(before)])
+    gains = np.array([max(cost - fitter.trial_cost(best.residual, i), 0.0) for i, cost in enumerate(before)])
     most = int(np.argmax(gains))
     alone = gains[most] > _ALONE * gains.sum() and len(fitter.comparison.readers[most].observed.time_s) > 0
     after = sum(fitter.trial_cost(residual, i) for i, residual in enumerate(chosen.residuals))
