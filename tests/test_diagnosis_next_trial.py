@@ -11,9 +11,11 @@ from tumblers.dataset import Dataset, LabTrial, Outcome, load
 from tumblers.diagnosis.attribute import attribute
 from tumblers.diagnosis.candidate import Candidate, candidates
 from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.estimate import samples
 from tumblers.diagnosis.fit import Fitter
-from tumblers.diagnosis.next_trial import _foretold, _information, next_trials
+from tumblers.diagnosis.foretold import foretell
+from tumblers.diagnosis.information import information
+from tumblers.diagnosis.next_trial import next_trials
+from tumblers.diagnosis.posterior import samples
 from tumblers.diagnosis.result import NextTrial
 from tumblers.diagnosis.simulator import Job, Simulator
 from tumblers.effects import get
@@ -62,7 +64,7 @@ def proposed(dataset: Dataset, tie: Tie) -> tuple[NextTrial, ...]:
     return next_trials(dataset, tie.simulator, tie.of((FRICTION, 0), (STRIP, 0)), seed=1)
 
 
-def information(dataset: Dataset, tie: Tie, slope: float, *chosen: tuple[str, int]) -> float:
+def told(dataset: Dataset, tie: Tie, slope: float, *chosen: tuple[str, int]) -> float:
     """Return what a trial on a slope tells of hypotheses of equal odds, bits."""
     option = Candidate(field=DRIVE, incline_deg=slope, duration_s=2.0)
     run = []
@@ -70,9 +72,9 @@ def information(dataset: Dataset, tie: Tie, slope: float, *chosen: tuple[str, in
         times = Counter(draws)
         paths = tie.simulator.run([Job(0, effects, edit=option.edit) for effects in times])
         run.append(list(zip(times.values(), paths, strict=True)))
-    foretold = _foretold(dataset, tie.simulator, option, run)
+    foretold = foretell(dataset, tie.simulator, option, run)
     assert foretold is not None
-    return _information(foretold, np.full(len(chosen), 1.0 / len(chosen)), seed=0)
+    return information(foretold, np.full(len(chosen), 1.0 / len(chosen)), seed=0)
 
 
 def test_draws_do_not_contradict_what_was_seen(tie: Tie) -> None:
@@ -129,12 +131,12 @@ def test_at_most_the_last_is_beyond_what_was_done_and_says_so(proposed: tuple[Ne
 @pytest.mark.parametrize("slope", [30.0, 32.0, 34.0, 36.0, 38.0, 45.0])
 def test_one_hypothesis_drawn_twice_has_next_to_nothing_to_tell_apart(dataset: Dataset, tie: Tie, slope: float) -> None:
     for name in (FRICTION, STRIP):
-        assert information(dataset, tie, slope, (name, 0), (name, 1)) < 0.02
-        assert information(dataset, tie, slope, (name, 0), (name, 0)) == 0.0
+        assert told(dataset, tie, slope, (name, 0), (name, 1)) < 0.02
+        assert told(dataset, tie, slope, (name, 0), (name, 0)) == 0.0
 
 
 def test_every_seed_tells_two_causes_apart_better_than_one_cause_from_itself(dataset: Dataset, tie: Tie) -> None:
-    found = [information(dataset, tie, 37.0, (FRICTION, a), (STRIP, b)) for a in (0, 1) for b in (0, 1)]
+    found = [told(dataset, tie, 37.0, (FRICTION, a), (STRIP, b)) for a in (0, 1) for b in (0, 1)]
     assert min(found) > 0.02
 
 

@@ -19,7 +19,7 @@ from .attribute import LAPSE, Attribution, attribute
 from .comparison import Comparison
 from .contender import Contender
 from .diagnosis import Diagnosis
-from .estimate import intervals, samples
+from .estimate import intervals
 from .fit import Fitter
 from .floor import TOLERANCES
 from .held_out import HeldOut, folds, held_out, is_foretold, shrink
@@ -27,6 +27,7 @@ from .localise import localise
 from .loss import robust_cost
 from .next_trial import next_trials
 from .overlay import overlays
+from .posterior import samples
 from .result import EffectEstimate, HeatMap, Interval, NextTrial, RankedHypothesis, Region, TrialFloor
 from .simulator import Job, Simulator
 from .verdict import judge, ties
