@@ -9,7 +9,8 @@ from matplotlib.figure import Figure
 
 import tumblers
 from tumblers import preset_scenario
-from tumblers.studies.plots import plot_climb, plot_convergence, plot_design, plot_tolerance, study_bytes
+from tumblers.plots.image import figure_bytes
+from tumblers.studies.plots import plot_climb, plot_convergence, plot_design, plot_tolerance
 from tumblers.studies.robust import Errors
 
 
@@ -55,7 +56,7 @@ def test_design_draws_every_family(robot: str) -> None:
     result = tumblers.design(scenario, samples=8, generations=0, errors=Errors(draws=8))
     figure = plot_design(result, Figure())
     assert legend(figure)[-3:] == ["base", "nominal", "robust"]
-    assert study_bytes(plot_design, result, "png", 40.0).startswith(b"\x89PNG")
+    assert figure_bytes(result, "png", 40.0, draw=plot_design).startswith(b"\x89PNG")
 
 
 def test_convergence_has_a_panel_for_each_number() -> None:

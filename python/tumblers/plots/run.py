@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..simulate import CONTACT_MODES
-from .style import BLUE, GREEN, ORANGE, PER_METRE, axes_or_new, figure_or_new, legend_above, scenario_words
+from .style import BLUE, GREEN, ORANGE, PER_METRE, axes_or_new, legend_above, titled_figure
 from .top_view import plot_top_view
 
 __all__ = ["plot_contact_modes", "plot_forces", "plot_run", "plot_trajectory"]
@@ -125,7 +125,7 @@ def plot_run(run: xr.Dataset, figure: Figure | None = None) -> Figure:
     matplotlib.figure.Figure
         The figure drawn on.
     """
-    figure = figure_or_new(figure, (11.0, 11.0))
+    figure = titled_figure(figure, (11.0, 11.0), "Run", run)
     rows: list[Any] = [["trajectory", "forces"], ["modes", "modes"], ["top", "top"]]
     axes = figure.subplot_mosaic(rows)
     plot_trajectory(run, axes["trajectory"])
@@ -139,5 +139,4 @@ def plot_run(run: xr.Dataset, figure: Figure | None = None) -> Figure:
     assert grid is not None
     grid.set_height_ratios(inches)
     figure.set_size_inches(11.0, 0.4 + sum(inches))
-    figure.suptitle(f"Run: {scenario_words(run.attrs['scenario'])}")
     return figure

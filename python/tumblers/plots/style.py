@@ -2,16 +2,33 @@
 
 from __future__ import annotations
 
+import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patheffects import Normal, withStroke
 
 from ..field import RotatingField, StaticField
 from ..scenario import Scenario
 
-__all__ = ["BLUE", "GREEN", "ORANGE", "PER_METRE", "axes_or_new", "figure_or_new", "legend_above", "scenario_words"]
+__all__ = [
+    "BLUE",
+    "GREEN",
+    "ORANGE",
+    "PER_METRE",
+    "RED",
+    "axes_or_new",
+    "figure_or_new",
+    "legend_above",
+    "on_white",
+    "scenario_words",
+    "titled_figure",
+]
 
 # Okabe and Ito's colours, told apart by colour-blind readers.
 BLUE, ORANGE, GREEN = "#0072B2", "#D55E00", "#009E73"
+# Marks what is good on a map, on any of its colours.
+RED = "#E31A1C"
 PER_METRE = 1e6
 
 
@@ -25,6 +42,15 @@ def figure_or_new(figure: Figure | None, figsize: tuple[float, float]) -> Figure
     from matplotlib import pyplot as plt
 
     return plt.figure(figsize=figsize, layout="constrained")
+
+
+def titled_figure(
+    figure: Figure | None, figsize: tuple[float, float], title: str, result: xr.Dataset, more: str = ""
+) -> Figure:
+    """Return `figure_or_new` under a title, which the robot and the field of a result's scenario follow, and `more`."""
+    figure = figure_or_new(figure, figsize)
+    figure.suptitle(f"{title}: {scenario_words(result.attrs['scenario'])}{more}")
+    return figure
 
 
 def axes_or_new(ax: Axes | None) -> Axes:
@@ -44,6 +70,11 @@ def legend_above(ax: Axes, **options: object) -> None:
         borderaxespad=0.1,
         **{"handlelength": 1.6, "columnspacing": 1.2} | options,
     )
+
+
+def on_white(artist: Artist, linewidth: float) -> None:
+    """Draw a line or an edge over a wider white one."""
+    artist.set_path_effects([withStroke(linewidth=linewidth, foreground="white"), Normal()])
 
 
 def scenario_words(scenario: str) -> str:

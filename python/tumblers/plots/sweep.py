@@ -13,10 +13,9 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
-from matplotlib.patheffects import Normal, withStroke
 
 from ..sweep import DRIFT_LIMIT_M, faster_cases, preferred_cases
-from .style import PER_METRE, axes_or_new, figure_or_new, legend_above, scenario_words
+from .style import PER_METRE, RED, axes_or_new, legend_above, on_white, titled_figure
 
 __all__ = ["plot_map", "plot_sweep"]
 
@@ -30,7 +29,6 @@ _SPEEDS: tuple[tuple[str, str, Dashes], ...] = (
     ("ideal_speed_m_per_s", "ideal", "-"),
     ("flipped_speed_m_per_s", "flipped", ":"),
 )
-_RED = "#E31A1C"
 _FAILED = "0.75"
 _MOST_TICKS = 14
 _MOST_GROUPS = 8
@@ -111,10 +109,9 @@ def plot_sweep(sweep: xr.Dataset, figure: Figure | None = None) -> Figure:
     matplotlib.figure.Figure
         The figure drawn on.
     """
-    figure = figure_or_new(figure, (11.0, 13.0))
+    figure = titled_figure(figure, (11.0, 13.0), "Manufacturing errors", sweep)
     for ax, name in zip(figure.subplots(3, 1), _MAPS, strict=True):
         plot_map(sweep, name, ax)  # type: ignore[arg-type]
-    figure.suptitle(f"Manufacturing errors: {scenario_words(sweep.attrs['scenario'])}")
     return figure
 
 
@@ -135,8 +132,8 @@ def _extend(values: np.ndarray[Any, Any], norm: Normalize) -> str:
 
 def _mark(ax: Axes, marks: np.ndarray[Any, Any]) -> None:
     cells = [Rectangle((column - 0.5, row - 0.5), 1.0, 1.0) for row, column in np.argwhere(marks)]
-    edges = PatchCollection(cells, facecolor="none", edgecolor=_RED, linewidth=1.6, zorder=3)
-    edges.set_path_effects([withStroke(linewidth=3.0, foreground="white"), Normal()])
+    edges = PatchCollection(cells, facecolor="none", edgecolor=RED, linewidth=1.6, zorder=3)
+    on_white(edges, 3.0)
     edges.set_gid("marked")
     ax.add_collection(edges)
 
@@ -194,7 +191,7 @@ def _legend(ax: Axes, name: str, speeds: dict[str, tuple[float, Dashes]], failed
     words = f"no flip, |drift| ≤ {DRIFT_LIMIT_M * PER_METRE:g} µm"
     if name == "speed_m_per_s":
         words += ", faster than ideal"
-    handles: list[Patch | Line2D] = [Patch(facecolor="none", edgecolor=_RED, linewidth=1.6, label=words)]
+    handles: list[Patch | Line2D] = [Patch(facecolor="none", edgecolor=RED, linewidth=1.6, label=words)]
     if failed:
         handles.append(Patch(facecolor=_FAILED, label="no value"))
     for speed_name, (speed, dashes) in speeds.items():
@@ -205,4 +202,4 @@ def _legend(ax: Axes, name: str, speeds: dict[str, tuple[float, Dashes]], failed
 def _mark_speeds(bar: Colorbar, speeds: dict[str, tuple[float, Dashes]]) -> None:
     for name, (speed, dashes) in speeds.items():
         line = bar.ax.axhline(speed, color="black", linestyle=dashes, linewidth=1.6, label=name)
-        line.set_path_effects([withStroke(linewidth=3.2, foreground="white"), Normal()])
+        on_white(line, 3.2)

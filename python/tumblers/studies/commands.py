@@ -256,9 +256,9 @@ def _finish(run: Callable[[], xr.Dataset], words: Callable[[xr.Dataset], str], o
     seconds = perf_counter() - start
     files: dict[Path, bytes | memoryview] = {out: netcdf_bytes(result)}
     if plot is not None:
-        from .plots import study_bytes
+        from ..plots.image import figure_bytes
 
-        files[plot] = study_bytes(_figure_of(result), result, plot.suffix.lower().removeprefix("."))
+        files[plot] = figure_bytes(result, plot.suffix.lower().removeprefix("."), draw=_figure_of(result))
     write_files(files)
     typer.echo(f"{words(result)}\ntime: {seconds:.2f} s")
     for warning in warnings(result):

@@ -3,7 +3,6 @@
 from .climb import plot_climb
 from .convergence import plot_convergence
 from .design import plot_design
-from .image import study_bytes
 from .tolerance import plot_tolerance
 
-__all__ = ["plot_climb", "plot_convergence", "plot_design", "plot_tolerance", "study_bytes"]
+__all__ = ["plot_climb", "plot_convergence", "plot_design", "plot_tolerance"]

@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ...plots.style import BLUE, GREEN, ORANGE, PER_METRE, figure_or_new, legend_above, scenario_words
+from ...plots.style import BLUE, GREEN, ORANGE, PER_METRE, legend_above, titled_figure
 from ...scenario import Scenario
 from ...sweep import ideal_speed
 
@@ -36,7 +36,7 @@ def plot_climb(climb: xr.Dataset, figure: Figure | None = None) -> Figure:
     matplotlib.figure.Figure
         The figure drawn on.
     """
-    figure = figure_or_new(figure, (9.0, 5.4))
+    figure = titled_figure(figure, (9.0, 5.4), "Climbing", climb)
     ax = figure.subplots()
     ideal = (ideal_speed(Scenario.from_toml(climb.attrs["scenario"])) or np.nan) * PER_METRE
     slopes, climbs = climb["incline_deg"].values, climb["climbs"].values.astype(bool)
@@ -63,7 +63,6 @@ def plot_climb(climb: xr.Dataset, figure: Figure | None = None) -> Figure:
     legend_above(ax, ncols=4)
     first = climb.attrs["settling_cycles"] + 1
     ax.set_title(f"Cycles {first} to {first + climb.attrs['cycles'] - 1}", loc="left")
-    figure.suptitle(f"Climbing: {scenario_words(climb.attrs['scenario'])}")
     return figure
 
 

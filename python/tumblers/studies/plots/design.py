@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from ...plots.style import GREEN, ORANGE, PER_METRE, figure_or_new, legend_above, scenario_words
+from ...plots.style import GREEN, ORANGE, PER_METRE, legend_above, titled_figure
 from ...scenario import Scenario
 from ..family import Family, family_of
 
@@ -38,7 +38,9 @@ def plot_design(design: xr.Dataset, figure: Figure | None = None) -> Figure:
     matplotlib.figure.Figure
         The figure drawn on.
     """
-    figure = figure_or_new(figure, (12.0, 9.6))
+    gain, error = (design.attrs[f"robust_gain{end}_m_per_s"] * PER_METRE for end in ("", "_error"))
+    more = f"\nrobust over nominal, on robots that no search has seen: {gain:+.0f} ± {error:.0f} µm/s of mean merit"
+    figure = titled_figure(figure, (12.0, 9.6), "Designs", design, more)
     (speed_drift, field_slope), (views, draws) = figure.subplots(2, 2)
     speed = ("speed_m_per_s", PER_METRE, "speed without errors (µm/s)")
     drift = ("error_drift_m", PER_METRE, "mean |drift| in a cycle over the errors (µm)")
@@ -48,12 +50,6 @@ def plot_design(design: xr.Dataset, figure: Figure | None = None) -> Figure:
     _space(figure, field_slope, design, field, slope, speed)
     _views(views, design)
     _draws(draws, design)
-    gain, error = (design.attrs[f"robust_gain{end}_m_per_s"] * PER_METRE for end in ("", "_error"))
-    figure.suptitle(
-        f"Designs: {scenario_words(design.attrs['scenario'])}\n"
-        f"robust over nominal, on robots that no search has seen: {gain:+.0f} ± {error:.0f} µm/s of mean merit",
-        fontsize="large",
-    )
     return figure
 
 

@@ -13,14 +13,13 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
-from matplotlib.patheffects import Normal, withStroke
 
-from ...plots.style import PER_METRE, figure_or_new, legend_above, scenario_words
+from ...plots.style import PER_METRE, RED, legend_above, on_white, titled_figure
+from ...simulate import FLIP_DEG
 from ..tolerance import PAPER_DRAFT_DEG, PAPER_THETA2_DEG
 
 __all__ = ["plot_tolerance"]
 
-_RED = "#E31A1C"
 _FLIPPED = "0.72"
 # The scale ends at so many times the limit: beyond it, by how much does not matter.
 _SCALE = 4.0
@@ -44,15 +43,11 @@ def plot_tolerance(tolerance: xr.Dataset, figure: Figure | None = None) -> Figur
     matplotlib.figure.Figure
         The figure drawn on.
     """
-    figure = figure_or_new(figure, (10.0, 9.0))
+    more = f", drift ≤ {tolerance.attrs['drift_limit_m'] * PER_METRE:g} µm\n{_alone(tolerance)}"
+    figure = titled_figure(figure, (10.0, 9.0), "Manufacturing tolerance", tolerance, more)
     above, below = figure.subplots(2, 1, height_ratios=[3, 2])
     _drift(figure, above, tolerance.isel(theta1_deg=-1))
     _share(figure, below, tolerance)
-    figure.suptitle(
-        f"Manufacturing tolerance: {scenario_words(tolerance.attrs['scenario'])}, "
-        f"drift ≤ {tolerance.attrs['drift_limit_m'] * PER_METRE:g} µm\n{_alone(tolerance)}",
-        fontsize="large",
-    )
     return figure
 
 
@@ -70,13 +65,13 @@ def _drift(figure: Figure, ax: Axes, at: xr.Dataset) -> None:
     limit = at.attrs["drift_limit_m"] * PER_METRE
     theta2, drafts = at["theta2_deg"].values, at["draft_deg"].values
     drift = np.abs(at["drift_m"].transpose("draft_deg", "theta2_deg").values) * PER_METRE
-    flipped = np.abs(at["twist_deg"].transpose("draft_deg", "theta2_deg").values) > 45.0
+    flipped = np.abs(at["twist_deg"].transpose("draft_deg", "theta2_deg").values) > FLIP_DEG
     x, y = _edges(theta2), _edges(drafts)
     shown = np.ma.masked_where(flipped | ~np.isfinite(drift), drift)
     mesh = ax.pcolormesh(x, y, shown, cmap="cividis_r", vmin=0.0, vmax=_SCALE * limit)
     ax.pcolormesh(x, y, np.ma.masked_where(~flipped, np.ones_like(drift)), cmap=ListedColormap([_FLIPPED]))
     bar = figure.colorbar(mesh, ax=ax, label="|drift| after one cycle (µm)", extend="max")
-    bar.ax.axhline(limit, color=_RED, linewidth=1.6)
+    bar.ax.axhline(limit, color=RED, linewidth=1.6)
     _outline(ax, x, y, at["kept"].transpose("draft_deg", "theta2_deg").values.astype(bool))
     ax.add_patch(
         Rectangle(
@@ -96,7 +91,7 @@ def _drift(figure: Figure, ax: Axes, at: xr.Dataset) -> None:
     legend_above(
         ax,
         handles=[
-            Line2D([], [], color=_RED, linewidth=1.8, label="kept"),
+            Line2D([], [], color=RED, linewidth=1.8, label="kept"),
             Patch(facecolor=_FLIPPED, label="flips"),
             Line2D([], [], color="black", linestyle="--", label="the paper's φ ≤ 2°, |θ2| ≤ 10°"),
         ],
@@ -111,7 +106,7 @@ def _share(figure: Figure, ax: Axes, tolerance: xr.Dataset) -> None:
     figure.colorbar(mesh, ax=ax, label="directions θ2 kept (%)")
     _outline(ax, x, y, share == 1.0)
     ax.set(title="All directions", xlabel="θ1 (°)", ylabel="draft φ (°)", xticks=tolerance["theta1_deg"].values)
-    legend_above(ax, handles=[Line2D([], [], color=_RED, linewidth=1.8, label="kept whatever θ2")])
+    legend_above(ax, handles=[Line2D([], [], color=RED, linewidth=1.8, label="kept whatever θ2")])
 
 
 def _edges(values: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
@@ -128,7 +123,7 @@ def _outline(ax: Axes, x: np.ndarray[Any, Any], y: np.ndarray[Any, Any], region:
     upright = np.argwhere(padded[1:-1, 1:] != padded[1:-1, :-1])
     lines = [[(x[j], y[i]), (x[j + 1], y[i])] for i, j in across]
     lines += [[(x[j], y[i]), (x[j], y[i + 1])] for i, j in upright]
-    edges = LineCollection(lines, colors=_RED, linewidths=1.8, zorder=3, capstyle="projecting", clip_on=False)
-    edges.set_path_effects([withStroke(linewidth=3.2, foreground="white"), Normal()])
+    edges = LineCollection(lines, colors=RED, linewidths=1.8, zorder=3, capstyle="projecting", clip_on=False)
+    on_white(edges, 3.2)
     edges.set_gid("kept")
     ax.add_collection(edges)
