@@ -71,6 +71,12 @@ def test_one_trial_without_a_gap_is_no_gap() -> None:
     assert diagnose(measure(plan(PLANS[1:2])), effects=CONSIDERED, jobs=2).verdict == "no_gap"
 
 
+def test_effects_in_another_order_are_the_same_answer() -> None:
+    data = measure(plan(PLANS[1:2]), (DRAG,))
+    one, other = (diagnose(data, effects=names, jobs=2) for names in (CONSIDERED, CONSIDERED[::-1]))
+    assert [entry.log_evidence for entry in one.ranking] == [entry.log_evidence for entry in other.ranking]
+
+
 def test_the_papers_outcomes_leave_two_causes_and_a_trial_that_parts_them() -> None:
     diagnosis = diagnose(dataset.load(EXAMPLE), jobs=2)
     assert diagnosis.verdict == "explained"

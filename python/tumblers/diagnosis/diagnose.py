@@ -268,7 +268,9 @@ def _kinds(effects: Sequence[str] | None) -> list[type[Effect]]:
         return list(CATALOGUE.values())
     if isinstance(effects, str) or not effects:
         raise InputError("effects", show(effects), "a list of names of effects")
-    return [get(name) for name in dict.fromkeys(effects)]
+    chosen = {get(name) for name in effects}
+    # However they were written, the answer is the same.
+    return [kind for kind in CATALOGUE.values() if kind in chosen]
 
 
 def _assumptions(comparison: Comparison, attribution: Attribution) -> tuple[str, ...]:
