@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from time import perf_counter
 from typing import Annotated
@@ -11,6 +10,7 @@ import typer
 
 from .check import thread_count
 from .errors import InputError
+from .folder import output_folder
 
 __all__ = ["diagnose"]
 
@@ -40,7 +40,9 @@ def diagnose(
       tumblers diagnose examples/aluminium_30deg --out diagnosis
       tumblers diagnose lab/spring --effects friction_coefficient,stray_field_gradient,coil_yaw.py --out diagnosis
     """  # noqa: D301 - \b keeps the lines of an example apart
-    _check_folder(out)
+    from .diagnosis.diagnosis import FILES
+
+    output_folder("--out", out, FILES)
     if jobs is not None:
         thread_count("--jobs", jobs)
     if seed < 0:
@@ -61,22 +63,6 @@ def diagnose(
     diagnosis.save(out)
     typer.echo(summary(diagnosis))
     typer.echo(f"\nreport: {out / 'report.html'}\ntime: {perf_counter() - start:.1f} s")
-
-
-def _check_folder(out: Path) -> None:
-    """Refuse a folder that could not be written to in the end, before anything is computed."""
-    if out.exists() and not out.is_dir():
-        raise InputError("--out", f"the file '{out}'", "a folder")
-    if not out.exists() and not out.parent.is_dir():
-        raise InputError("--out", f"'{out}'", f"a folder in one that exists, '{out.parent}' does not")
-    written = out if out.exists() else out.parent
-    if not os.access(written, os.W_OK | os.X_OK):
-        raise InputError("--out", f"'{out}'", f"a folder that can be written to, '{written}' cannot")
-    from .diagnosis.diagnosis import FILES
-
-    for name in FILES:
-        if (out / name).is_dir():
-            raise InputError("--out", f"the folder '{out / name}'", f"a folder in which {name} can be written")
 
 
 def _effect_names(text: str) -> list[str]:

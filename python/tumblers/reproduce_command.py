@@ -8,8 +8,9 @@ from typing import Annotated
 
 import typer
 
-from .diagnose_command import _check_folder
+from .check import thread_count
 from .errors import InputError
+from .folder import output_folder
 from .options import numbers, output_file
 
 __all__ = ["reproduce"]
@@ -33,25 +34,27 @@ def reproduce(
       tumblers reproduce --only 2,7 --out reproduction
       tumblers reproduce --out reproduction --page docs/reproduction.md
     """  # noqa: D301 - \b keeps the lines of an example apart
-    _check_folder(out)
+    wanted = None if only is None else _wanted(only)
     if page is not None:
         output_file("--page", page, (".md",), [])
         if only is not None:
             raise InputError("--page", "it beside --only", "it with all results")
-    if jobs is not None and jobs < 1:
-        raise InputError("--jobs", str(jobs), "a whole number of at least 1")
-    chosen = None if only is None else _chosen(only)
+    if jobs is not None:
+        thread_count("--jobs", jobs)
+    from .reproduction.reproduce import chosen
     from .reproduction.reproduce import reproduce as run
+    from .reproduction.reproduction import file_names
     from .reproduction.terminal import print_counts
 
+    output_folder("--out", out, file_names(chosen(wanted)))
     start = perf_counter()
-    reproduction = run(chosen, jobs=jobs, progress=True)
-    reproduction.save(out, page)
+    reproduction = run(wanted, jobs=jobs, progress=True)
+    reproduction.save(out, page, progress=True)
     print_counts(reproduction)
     typer.echo(f"\npage: {out / 'index.html'}\ntime: {perf_counter() - start:.1f} s")
 
 
-def _chosen(text: str) -> list[int]:
+def _wanted(text: str) -> list[int]:
     from .reproduction.reproduce import NUMBERS
 
     expected = f"numbers of results from {NUMBERS[0]} to {NUMBERS[-1]}, such as 2,7 or 1:4"

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import json
+import os
 import re
+import signal
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -73,6 +76,35 @@ def test_bad_arguments_get_one_line_and_write_nothing(tmp_path: Path, arguments:
     assert done.stderr.count("\n") == 1
     assert words in done.stderr
     assert [file.name for file in tmp_path.iterdir()] == ["file"]
+
+
+def test_a_folder_in_the_way_of_a_file_is_refused_before_anything_is_written(tmp_path: Path) -> None:
+    (tmp_path / "found" / "03_adhesion_on_slope.nc").mkdir(parents=True)
+    done = tumble("--only", "3", "--out", "found", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr == (
+        "tumblers: --out: found the folder 'found/03_adhesion_on_slope.nc', expected a folder in which "
+        "03_adhesion_on_slope.nc can be written\n"
+    )
+    assert [file.name for file in (tmp_path / "found").iterdir()] == ["03_adhesion_on_slope.nc"]
+    # No file of this name is written by another result.
+    assert tumble("--only", "2", "--out", "found", "--jobs", 1, cwd=tmp_path).returncode == 0
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals")
+def test_an_interrupt_leaves_no_file(tmp_path: Path) -> None:
+    """In the middle of the runs: the first line of progress comes after ten seconds of them."""
+    command = [sys.executable, "-m", "tumblers", "reproduce", "--only", "8,9", "--jobs", "1", "--out", "found"]
+    # A shell makes the jobs that it starts in the background ignore SIGINT, the tests among them.
+    hear = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, cwd=tmp_path, preexec_fn=hear) as running:
+        assert running.stderr is not None
+        assert running.stderr.readline().startswith("tumblers: runs ")
+        running.send_signal(signal.SIGINT)
+        rest = running.stderr.read()
+        assert running.wait(60) == 130
+    assert rest.endswith("tumblers: interrupted, nothing was written\n")
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize(("arguments", "key"), [({"only": [0]}, "only"), ({"only": []}, "only"), ({"jobs": 0}, "jobs")])

@@ -20,6 +20,7 @@ from tumblers.reproduction.paper_result import PaperResult
 from tumblers.reproduction.row import shown
 from tumblers.reproduction.suspect import STANDARD, Suspect, suspects
 from tumblers.reproduction.tolerance import Tolerance, absolute, at_least, at_most, exact, relative
+from tumblers.reproduction.words import Counts
 
 
 @pytest.mark.parametrize(
@@ -113,14 +114,15 @@ def test_what_moves_a_row_is_found_by_a_run() -> None:
     assert [row.verdict for row in rows.values()] == ["differs", "match", "differs", "differs"]
     mended, alone, never = rows["mended"], rows["moved alone"], rows["never"]
     # e_r mends one row and spoils another: moved, and no explanation.
-    assert (mended.moved, mended.explained) == (True, False)
+    assert mended.kind == "moved at a cost"
     assert (
         mended.why
         == "moved by a run, at the cost of other rows: 1 with small e_r (1 of the set's 4 rows then match, 1 before)"
     )
-    assert (alone.moved, alone.explained) == (True, True)
+    assert alone.kind == "explained"
     assert alone.why == "shown by a run: 2 with wide (2 of the set's 4 rows then match, 1 before)"
-    assert (never.moved, never.explained) == (False, False)
+    assert never.kind == "open"
+    assert rows["spoilt"].kind == "match"
     assert never.why == (
         "none of the 4 choices tried explains it: a run that fails with broken; "
         "unchanged with small e_r, wide, the released parameters"
@@ -128,6 +130,16 @@ def test_what_moves_a_row_is_found_by_a_run() -> None:
     assert rows["spoilt"].trials == ()
     assert told == sorted(told)
     assert told[-1] == most_runs(example) == 2 * (2 + 4 + 3)
+
+
+def test_the_counts_name_every_kind_and_both_shares() -> None:
+    counts = Counts.of(examine(Example(), 1, lambda done: None).rows)
+    assert (counts.rows, counts.match, counts.explained, counts.moved, counts.open) == (8, 2, 2, 2, 2)
+    assert counts.words == (
+        "8 rows: 2 match, 6 differ. Of those that differ, 2 are explained by a change of one choice that was run, 2 "
+        "are moved by one at the cost of other rows, 2 are open. Match or explained: 4 of 8, 50.0 %; with those moved "
+        "at a cost: 6 of 8, 75.0 %."
+    )
 
 
 def test_the_same_choices_are_run_once() -> None:
@@ -159,7 +171,7 @@ def test_a_row_in_json() -> None:
         "ours": 0.0,
         "verdict": "differs",
     }
-    assert table["moved_by"] == ["wide"]
+    assert (table["kind"], table["moved_by"]) == ("explained", ["wide"])
     assert (table["set"], table["parameters"], table["draft_model"]) == ("text", "text", "geometric")
     assert table["tolerance"] == "± 0.1"
     assert replace(row, ours=nan).table()["ours"] is None

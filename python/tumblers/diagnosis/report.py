@@ -5,9 +5,9 @@ from __future__ import annotations
 from html import escape
 from math import isfinite
 
+from ..page import bar, data_table, figure, grid, listed, page, section, text
 from .condition import condition_of
 from .diagnosis import Diagnosis
-from .page import bar, data_table, figure, grid, listed, page, section, text
 from .phrase import meaning_of, title_of, unit_of
 from .plausible import plausible_ranges
 from .plots.gap import plot_gap

@@ -6,9 +6,9 @@ from html import escape
 from math import isfinite
 
 from ..dataset import LabTrial
+from ..page import data_table, figure, grid, listed, text
 from .condition import condition_of, condition_of_table
 from .diagnosis import Diagnosis
-from .page import data_table, figure, grid, listed, text
 from .phrase import title_of
 from .plots.overlay import plot_overlay
 from .plots.svg import WIDTH_IN, svg_bytes

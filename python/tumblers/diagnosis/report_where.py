@@ -6,8 +6,8 @@ from html import escape
 
 import numpy as np
 
+from ..page import bar, data_table, figure, grid, text
 from .diagnosis import Diagnosis
-from .page import bar, data_table, figure, grid, text
 from .plots.heat_map import plot_heat_map
 from .plots.svg import WIDTH_IN, svg_bytes
 from .plots.wrench import By, averages, plot_wrench

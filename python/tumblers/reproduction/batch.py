@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import xarray as xr
+from numpy.typing import NDArray
 
 from .. import _core
 from ..progress import OnProgress, native_call
 from ..scenario import Scenario
 
-__all__ = ["batch"]
+__all__ = ["mean_speeds"]
 
 
-def batch(scenarios: Sequence[Scenario], threads: int, on_progress: OnProgress) -> xr.Dataset:
-    """Run scenarios and return speed (m/s), drift (m) and twist (degrees) over the dimension ``case``.
+def mean_speeds(scenarios: Sequence[Scenario], threads: int, on_progress: OnProgress) -> NDArray[np.float64]:
+    """Run n scenarios and return their mean speeds along y, m/s, shape (n,); not a number where a run failed.
 
     Parameters
     ----------
@@ -25,11 +25,6 @@ def batch(scenarios: Sequence[Scenario], threads: int, on_progress: OnProgress) 
         Number of threads, 0 for all.
     on_progress
         Told how many are done.
-
-    Returns
-    -------
-    xarray.Dataset
-        ``speed_m_per_s``, ``drift_m``, ``twist_deg``, ``unconverged_steps``; not a number where a run failed.
 
     Raises
     ------
@@ -42,15 +37,4 @@ def batch(scenarios: Sequence[Scenario], threads: int, on_progress: OnProgress) 
     with native_call("runs", len(trials), on_progress) as report:
         found = _core.sweep(trials, threads, report)
     failed = np.array([bool(error) for error in found["error"]], dtype=bool)
-    columns = {
-        "speed_m_per_s": (found["speed_m_per_s"], "m s-1"),
-        "drift_m": (found["drift_m"], "m"),
-        "twist_deg": (np.degrees(found["twist_rad"]), "degree"),
-        "unconverged_steps": (found["unconverged_steps"].astype(np.float64), "1"),
-    }
-    return xr.Dataset(
-        {
-            name: ("case", np.where(failed, np.nan, values), {"units": units})
-            for name, (values, units) in columns.items()
-        }
-    )
+    return np.where(failed, np.nan, found["speed_m_per_s"])

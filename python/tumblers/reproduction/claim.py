@@ -9,7 +9,9 @@ import xarray as xr
 
 from .tolerance import Tolerance
 
-__all__ = ["Claim"]
+__all__ = ["Claim", "Measure"]
+
+Measure = Callable[[xr.Dataset], float | str]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -36,5 +38,5 @@ class Claim:
     quantity: str
     paper: float | str
     tolerance: Tolerance
-    measure: Callable[[xr.Dataset], float | str]
+    measure: Measure
     note: str = ""

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from .examine import Examined
 from .reproduction import Reproduction
 from .row import shown
-from .words import HEADS, Counts, choice_words
+from .words import HEADS, KINDS, SHARES, TITLE, TOLERANCES, Counts, choice_words, verdict_words
 
 __all__ = ["document", "introduction", "section", "table"]
 
@@ -31,17 +31,16 @@ def introduction() -> str:
     """Return what the page says before the numbers."""
     return "\n\n".join(
         (
-            "# The paper's results, and ours",
+            f"# {TITLE}",
             "Written by `tumblers reproduce --out DIR --page docs/reproduction.md`: every number and statement of the "
-            "paper's results, ours beside it, and where they part, what a change of one choice makes of it. A "
-            "tolerance and its reason were written down before the runs; none is fitted to them.",
+            "paper's results, ours beside it, and where they part, what a change of one choice makes of it.",
+            TOLERANCES,
             "A set says whose numbers of the substrate a row was run with, the `text`'s or the `released` code's, and, "
             "where a draft is involved, by which formula: `geometric` is what is drawn, `as_released` what the "
             "released code computes. PDMS on aluminium has numbers in the released code only; there the set `text` "
             f"takes the text's only table for aluminium, that of SU-8. All else is {choice_words()}.",
-            "A row that differs is run again with one choice changed, each in turn. With two dozen choices some will "
-            "meet a number by chance: beside each that does stands how many rows of the same result and set then "
-            "match. A choice that mends one row and spoils as many others is not counted as its explanation.",
+            KINDS,
+            SHARES,
         )
     )
 
@@ -64,7 +63,7 @@ def section(one: Examined) -> str:
 
 
 def table(one: Examined) -> str:
-    """Return a result's heading, rows and tolerances, which no suspect changes.
+    """Return a result's heading, rows and tolerances; only the kinds of rows that differ depend on the suspects.
 
     Parameters
     ----------
@@ -79,7 +78,7 @@ def table(one: Examined) -> str:
             shown(row.claim.paper),
             shown(row.ours),
             row.claim.tolerance.words,
-            row.verdict,
+            verdict_words(row),
         )
         for row in one.rows
     ]

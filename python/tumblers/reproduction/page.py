@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from base64 import b64encode
 from collections.abc import Mapping
 from html import escape
 from io import BytesIO
 
 from matplotlib.figure import Figure
 
-from ..diagnosis.page import data_table, listed, page, section, text
+from ..page import data_table, listed, page, section, text
+from ..page import figure as embedded
 from .examine import Examined
 from .reproduction import Reproduction
 from .row import Row, shown
-from .words import Counts, choice_words, verdict_words
+from .words import KINDS, SHARES, TITLE, TOLERANCES, Counts, choice_words, verdict_words
 
 __all__ = ["figure_png", "page_html"]
 
@@ -39,7 +39,7 @@ def figure_png(one: Examined) -> bytes:
     one
         The result.
     """
-    figure = Figure()
+    figure = Figure(layout="constrained")
     one.result.figure(one.data, figure)
     buffer = BytesIO()
     figure.savefig(buffer, format="png", dpi=_DPI)
@@ -61,25 +61,22 @@ def page_html(reproduction: Reproduction, figures: Mapping[int, bytes]) -> str:
         for one in reproduction.examined
     )
     head = (
-        f"{_STYLE}<h1>The paper's results, and ours</h1>\n"
+        f"{_STYLE}<h1>{escape(TITLE)}</h1>\n"
         + text(Counts.of(reproduction.rows).words)
         + text(
             "A row is a number or a statement of the paper. Its set says whose numbers of the substrate it was run "
             "with, the text's or the released code's, and, where a draft is involved, by which formula; all else is "
-            f"{choice_words()}. Tolerances were written down before the runs. A row that differs was run again with "
-            "one choice changed, each in turn."
+            f"{choice_words()}."
         )
+        + "".join(text(words) for words in (TOLERANCES, KINDS, SHARES))
         + f"<nav>{links}</nav>\n"
     )
-    return page(
-        "The paper's results, and ours", head + "".join(_section(one, figures) for one in reproduction.examined)
-    )
+    return page(TITLE, head + "".join(_section(one, figures) for one in reproduction.examined))
 
 
 def _section(one: Examined, figures: Mapping[int, bytes]) -> str:
     result = one.result
-    data = b64encode(figures[result.number]).decode()
-    picture = f'<figure><img alt="{escape(result.title)}" src="data:image/png;base64,{data}"></figure>\n'
+    picture = embedded(figures[result.number], result.title, media="image/png")
     rows = data_table(
         ("robot", "quantity", "set", "paper", "ours", "tolerance", "verdict"), [_cells(row) for row in one.rows]
     )

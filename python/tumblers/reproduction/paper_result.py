@@ -23,7 +23,7 @@ class PaperResult(ABC):
     Attributes
     ----------
     number, name
-        Its number in the paper's order, and its name, which files bear.
+        Its number in the paper's order, and its name.
     title
         What it is, in words.
     sets
@@ -43,6 +43,11 @@ class PaperResult(ABC):
     suspects: ClassVar[tuple[Suspect, ...]]
     runs: ClassVar[int]
     claims: ClassVar[tuple[Claim, ...]]
+
+    @property
+    def stem(self) -> str:
+        """What the names of its files begin with."""
+        return f"{self.number:02d}_{self.name}"
 
     @abstractmethod
     def simulate(self, choices: Choices, threads: int, on_progress: OnProgress) -> xr.Dataset:

@@ -4,15 +4,40 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from ..check import thread_count
 from ..errors import InputError, show
 from ..progress import OnProgress, native_call
 from .examine import examine, most_runs
+from .paper_result import PaperResult
 from .reproduction import Reproduction
 from .results import RESULTS
 
-__all__ = ["NUMBERS", "reproduce"]
+__all__ = ["NUMBERS", "chosen", "reproduce"]
 
 NUMBERS = tuple(result.number for result in RESULTS)
+
+
+def chosen(only: Sequence[int] | None) -> list[PaperResult]:
+    """Return the results of some numbers, in the paper's order.
+
+    Parameters
+    ----------
+    only
+        Numbers of the results, 1 to 10; all of them if None.
+
+    Raises
+    ------
+    InputError
+        A number that is none of the results', or none at all.
+    """
+    if only is None:
+        return list(RESULTS)
+    for number in only:
+        if number not in NUMBERS:
+            raise InputError("only", show(number), f"numbers of results, {NUMBERS[0]} to {NUMBERS[-1]}")
+    if not only:
+        raise InputError("only", "an empty list", "at least one number of a result")
+    return [result for result in RESULTS if result.number in only]
 
 
 def reproduce(
@@ -36,23 +61,16 @@ def reproduce(
     SimulationError
         The native module gave up.
     """
-    if only is not None:
-        for number in only:
-            if number not in NUMBERS:
-                raise InputError("only", show(number), f"numbers of results, {NUMBERS[0]} to {NUMBERS[-1]}")
-        if not only:
-            raise InputError("only", "an empty list", "at least one number of a result")
-    if jobs is not None and (isinstance(jobs, bool) or not isinstance(jobs, int) or jobs < 1):
-        raise InputError("jobs", show(jobs), "a whole number of at least 1")
-    chosen = [result for result in RESULTS if only is None or result.number in only]
+    results = chosen(only)
+    threads = 0 if jobs is None else thread_count("jobs", jobs)
     examined, before = [], 0
-    with native_call("runs", sum(most_runs(result) for result in chosen), progress) as on_progress:
-        for result in chosen:
+    with native_call("runs", sum(most_runs(result) for result in results), progress) as on_progress:
+        for result in results:
 
             def report(done: int, before: int = before) -> None:
                 if on_progress is not None:
                     on_progress(before + done)
 
-            examined.append(examine(result, jobs or 0, report))
+            examined.append(examine(result, threads, report))
             before += most_runs(result)
     return Reproduction(tuple(examined))

@@ -9,9 +9,10 @@ from typing import Any, Literal
 from .choice import Choices
 from .claim import Claim
 
-__all__ = ["Row", "Trial", "shown"]
+__all__ = ["Kind", "Row", "Trial", "Verdict", "shown"]
 
 Verdict = Literal["match", "differs"]
+Kind = Literal["match", "explained", "moved at a cost", "open"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,14 +76,16 @@ class Row:
         return tuple(sorted(found, key=lambda trial: -trial.matching))
 
     @property
-    def moved(self) -> bool:
-        """Whether a change of one choice moves our value to the paper's, whatever it does to other rows."""
-        return bool(self.moving)
+    def kind(self) -> Kind:
+        """Whether it matches, and if not, whether a change of one choice moves our value to the paper's.
 
-    @property
-    def explained(self) -> bool:
-        """Whether a change moves our value to the paper's, with more of the set's rows matching than without it."""
-        return any(trial.matching > self.matching for trial in self.moving)
+        It is explained if more of the set's rows match with the change than without it, moved at a cost if not.
+        """
+        if self.verdict == "match":
+            return "match"
+        if not self.moving:
+            return "open"
+        return "explained" if any(trial.matching > self.matching for trial in self.moving) else "moved at a cost"
 
     @property
     def why(self) -> str:
@@ -93,7 +96,7 @@ class Row:
         if not self.trials:
             return " ".join([*note, "no choice has been tried"])
         if self.moving:
-            lead = "shown by a run" if self.explained else "moved by a run, at the cost of other rows"
+            lead = "shown by a run" if self.kind == "explained" else "moved by a run, at the cost of other rows"
             return " ".join([*note, f"{lead}: {'; '.join(self._moves())}"])
         gave: dict[str, list[str]] = {}
         for trial in self.trials:
@@ -126,7 +129,7 @@ class Row:
             "ours": _json(self.ours),
             "verdict": self.verdict,
             "why": self.why,
-            "explained": self.explained,
+            "kind": self.kind,
             "moved_by": [trial.suspect for trial in self.moving],
             "set": self.set_name,
             "tolerance": self.claim.tolerance.words,

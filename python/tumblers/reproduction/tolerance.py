@@ -1,4 +1,4 @@
-"""`Tolerance`: how far our number may lie from the paper's, and why, written down before any run."""
+"""`Tolerance`: how far our number may lie from the paper's, and why; `words.TOLERANCES` says when that was written."""
 
 from __future__ import annotations
 

@@ -111,7 +111,6 @@ class AdhesionOnSlope(PaperResult):
     def figure(self, data: Mapping[str, xr.Dataset], figure: Figure) -> None:
         """Draw the force over time, with the paper's two values."""
         figure.set_size_inches(9.0, 2.4 * len(data))
-        figure.set_layout_engine("constrained")
         axes = figure.subplots(len(data), 1, squeeze=False, sharex=True)[:, 0]
         for ax, (name, found) in zip(axes, data.items(), strict=True):
             ax.plot(found["time"][1:], found["adhesion_force_N"][1:] * 1e7, color=BLUE, linewidth=0.9, label="ours")

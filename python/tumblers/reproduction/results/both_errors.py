@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -18,24 +18,14 @@ from ..claim import Claim
 from ..paper_result import PaperResult
 from ..suspect import DRAFT, STANDARD, UNSTATED
 from ..tolerance import absolute, at_least, exact
-from .errors import FIFTY, PER_METRE, ROBOTS, YES, errors, of, robot_words
+from .errors import FIFTY, PER_METRE, ROBOTS, YES, claim, errors, median_of_flips, robot_words
 from .sets import DRAFTS
 
 __all__ = ["BothErrors"]
 
-Measure = Callable[[xr.Dataset], float | str]
 _CASES = len(PAPER_DRAFTS_DEG) * len(PAPER_MAGNETIZATION_DEG)
 _SMALL_DRAFT_DEG, _SMALL_THETA2_DEG = 2.0, 10.0
 _COUNT = exact("a count")
-# 592 cases a robot take as long as all other results together: neighbours of what is tried anyway are left out, and the
-# steps that are finer than half of the released one.
-_LEFT_OUT: tuple[dict[str, Any], ...] = (
-    *({"e_r_m": e_r} for e_r in (3e-4, 3e-3)),
-    *({"line_contact_width_m": width} for width in (3e-6, 9e-6)),
-    *({"step_s": step} for step in (1e-3, 1e-4, 5e-5)),
-    {"magnetic_torque": "start_of_step", "step_s": 1e-4},
-    {"pose": "stated"},
-)
 
 
 def _preferred(data: xr.Dataset) -> xr.DataArray:
@@ -75,14 +65,6 @@ def _yes(found: xr.DataArray) -> str:
     return "Y" if bool(found.any()) else "N"
 
 
-def _median_of_flips(name: str, factor: float) -> Measure:
-    def measure(data: xr.Dataset) -> float | str:
-        values = np.abs(data[name].values)[np.abs(data["twist_deg"].values) > FLIP_DEG] * factor
-        return float(np.median(values)) if values.size else "no flip"
-
-    return measure
-
-
 def _worst_drift(data: xr.Dataset) -> float:
     return float(abs(_small(data)["drift_m"]).max(skipna=False)) * PER_METRE
 
@@ -94,35 +76,25 @@ def _share_faster_upright(data: xr.Dataset) -> float:
     return int(fast.sum()) / count if count else float("nan")
 
 
-def _claim(robot: str, quantity: str, paper: float | str, tolerance: object, measure: Measure) -> Claim:
-    return Claim(
-        robot=robot_words(robot),
-        quantity=quantity,
-        paper=paper,
-        tolerance=tolerance,  # type: ignore[arg-type]
-        measure=of(robot, measure),
-    )
-
-
 def _shared(robot: str) -> tuple[Claim, ...]:
     return (
-        _claim(robot, "cases run", float(_CASES), _COUNT, _ran),
-        _claim(
+        claim(robot, "cases run", float(_CASES), _COUNT, _ran),
+        claim(
             robot,
             "|twist| where it flips (median), °",
             90.0,
             absolute(10.0, "'≈ 90°', read off a colour"),
-            _median_of_flips("twist_deg", 1.0),
+            median_of_flips("twist_deg", 1.0),
         ),
-        _claim(
+        claim(
             robot,
             "speed where it flips (median), µm/s",
             1200.0,
             absolute(20.0, "'closer to 1200 µm/s' than 2 %"),
-            _median_of_flips("speed_m_per_s", PER_METRE),
+            median_of_flips("speed_m_per_s", PER_METRE),
         ),
-        _claim(robot, "greatest |d_e| for |θ2| ≤ 10° and φ ≤ 2°, µm", "at most 50", FIFTY, _worst_drift),
-        _claim(
+        claim(robot, "greatest |d_e| for |θ2| ≤ 10° and φ ≤ 2°, µm", "at most 50", FIFTY, _worst_drift),
+        claim(
             robot,
             "a preferred case with errors beyond both of those tolerances",
             "Y",
@@ -138,17 +110,17 @@ def _shared(robot: str) -> tuple[Claim, ...]:
 
 _SPIKED = (
     *_shared("spiked"),
-    _claim(
+    claim(
         "spiked", "preferred at φ = 15°, θ2 = 200°", "Y", YES, lambda data: _yes(_preferred(_at_200(data, 15.0, 15.0)))
     ),
-    _claim(
+    claim(
         "spiked",
         "preferred and faster than 1093 µm/s at θ2 = 200°, of the 7 drafts from 8° to 14°",
         7.0,
         _COUNT,
         lambda data: float(_faster(_at_200(data, 8.0, 14.0)).sum()),
     ),
-    _claim(
+    claim(
         "spiked",
         "preferred and faster than 1093 µm/s with small errors (|θ2| ≤ 10°, φ ≤ 2°)",
         "Y",
@@ -158,14 +130,14 @@ _SPIKED = (
 )
 _SPIKED_ENDS = (
     *_shared("spiked_ends"),
-    _claim(
+    claim(
         "spiked_ends",
         "share of the cases with errors and without flip that are faster than 1197 µm/s: 'often'",
         "often",
         at_least(0.5, "'often' is half of them or more"),
         _share_faster_upright,
     ),
-    _claim("spiked_ends", "a preferred case faster than 1197 µm/s", "Y", YES, lambda data: _yes(_faster(data))),
+    claim("spiked_ends", "a preferred case faster than 1197 µm/s", "Y", YES, lambda data: _yes(_faster(data))),
 )
 
 
@@ -176,7 +148,7 @@ class BothErrors(PaperResult):
     name = "both_errors"
     title = "Draft and magnetization error together, 592 cases a robot"
     sets = DRAFTS
-    suspects = tuple(suspect for suspect in (*DRAFT, *UNSTATED, *STANDARD) if suspect.changes not in _LEFT_OUT)
+    suspects = (*DRAFT, *UNSTATED, *STANDARD)
     runs = len(ROBOTS) * _CASES
     claims = (*_SPIKED, *_SPIKED_ENDS)
 
@@ -187,7 +159,6 @@ class BothErrors(PaperResult):
     def figure(self, data: Mapping[str, xr.Dataset], figure: Figure) -> None:
         """Draw the maps of twist, drift and speed, those of a set side by side for both robots."""
         figure.set_size_inches(10.5 * len(ROBOTS), 10.5 * len(data))
-        figure.set_layout_engine("constrained")
         grid = figure.subfigures(len(data), len(ROBOTS), squeeze=False)
         for row, (name, found) in zip(grid, data.items(), strict=True):
             for part, robot in zip(row, ROBOTS, strict=True):

@@ -13,8 +13,7 @@ from matplotlib.patches import Rectangle
 from ...plots.style import BLUE, ORANGE
 from ...presets import drive
 from ...progress import OnProgress
-from ...robot import Robot
-from ..batch import batch
+from ..batch import mean_speeds
 from ..choice import Choices, Ground
 from ..tolerance import exact
 
@@ -43,7 +42,7 @@ def slopes(
     ground, choices
         What they move on, and what else the run depends on.
     threads, on_progress
-        As in `tumblers.reproduction.batch.batch`.
+        As in `tumblers.reproduction.batch.mean_speeds`.
 
     Returns
     -------
@@ -56,23 +55,15 @@ def slopes(
         for incline in inclines_deg
     ]
     shape = (len(robots), len(inclines_deg))
-    found = batch(scenarios, threads, on_progress)
-    ideal = [_perimeter(scenario.robot) * _FREQUENCY_HZ for scenario in scenarios[:: len(inclines_deg)]]
+    speeds = mean_speeds(scenarios, threads, on_progress)
+    ideal = [scenario.robot.body().hull_perimeter_m * _FREQUENCY_HZ for scenario in scenarios[:: len(inclines_deg)]]
     return xr.Dataset(
         {
-            "speed_m_per_s": (
-                ("robot", "incline_deg"),
-                found["speed_m_per_s"].values.reshape(shape),
-                {"units": "m s-1"},
-            ),
+            "speed_m_per_s": (("robot", "incline_deg"), speeds.reshape(shape), {"units": "m s-1"}),
             "ideal_speed_m_per_s": ("robot", ideal, {"units": "m s-1"}),
         },
         {"robot": list(robots), "incline_deg": ("incline_deg", list(inclines_deg), {"units": "degree"})},
     )
-
-
-def _perimeter(robot: Robot) -> float:
-    return float(robot.body().hull_perimeter_m)
 
 
 def climbed(data: xr.Dataset) -> xr.DataArray:
@@ -113,7 +104,6 @@ def draw_table(data: Mapping[str, xr.Dataset], paper: Mapping[tuple[str, float],
     """
     first = next(iter(data.values()))
     figure.set_size_inches(9.0, 1.5 + 1.1 * first.sizes["robot"])
-    figure.set_layout_engine("constrained")
     axes = figure.subplots(1, len(data), squeeze=False, sharey=True)[0]
     for ax, (name, found) in zip(axes, data.items(), strict=True):
         _draw_one(ax, found, paper)

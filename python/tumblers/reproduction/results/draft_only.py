@@ -13,7 +13,7 @@ from ...grid import PAPER_DRAFTS_DEG
 from ...plots.style import BLUE, ORANGE
 from ...progress import OnProgress
 from ..choice import Choices
-from ..claim import Claim
+from ..claim import Measure
 from ..paper_result import PaperResult
 from ..suspect import DRAFT, STANDARD, UNSTATED
 from ..tolerance import absolute, exact
@@ -26,16 +26,15 @@ from .errors import (
     PER_METRE,
     ROBOTS,
     YES,
+    claim,
     errors,
     flips,
-    of,
     robot_words,
 )
 from .sets import DRAFTS
 
 __all__ = ["DraftOnly"]
 
-Measure = Callable[[xr.Dataset], float | str]
 _DEGREE = absolute(1.0, "the text gives whole degrees, read off a figure")
 _FROM = absolute(1.0, "'from φ on' can mean that the greatest is there or a step of 1° before")
 _RISING_M_PER_S = 2e-6
@@ -118,45 +117,34 @@ def _twist_rises_to(draft_deg: float) -> Measure:
     return measure
 
 
-def _claim(robot: str, quantity: str, paper: float | str, tolerance: object, measure: Measure, note: str = "") -> Claim:
-    return Claim(
-        robot=robot_words(robot),
-        quantity=quantity,
-        paper=paper,
-        tolerance=tolerance,  # type: ignore[arg-type]
-        measure=of(robot, measure),
-        note=note,
-    )
-
-
 _SPIKED = (
-    _claim("spiked", "speed without errors, µm/s", 1093.0, IDEAL, _at(_speed, 0.0)),
-    _claim("spiked", "flips among φ = 0° to 15°", 0.0, exact("a count"), _flips),
-    _claim(
+    claim("spiked", "speed without errors, µm/s", 1093.0, IDEAL, _at(_speed, 0.0)),
+    claim("spiked", "flips among φ = 0° to 15°", 0.0, exact("a count"), _flips),
+    claim(
         "spiked", "least twist, °", -20.0, absolute(1.5, "the text says -20 of the range and -21 of it"), _least_twist
     ),
-    _claim("spiked", "greatest twist, °", 10.0, _DEGREE, _greatest_twist),
-    _claim("spiked", "φ of the greatest twist, °", 13.0, GRID, _draft_of_greatest(_twist)),
-    _claim("spiked", "the twist rises from step to step up to φ = 13°", "Y", YES, _twist_rises_to(13.0)),
-    _claim("spiked", "twist at φ = 14°, °", 0.0, _DEGREE, _at(_twist, 14.0)),
-    _claim("spiked", "twist at φ = 15°, °", -21.0, _DEGREE, _at(_twist, 15.0)),
-    _claim("spiked", "φ from which the drift falls (that of the greatest), °", 13.0, _FROM, _draft_of_greatest(_drift)),
-    _claim(
+    claim("spiked", "greatest twist, °", 10.0, _DEGREE, _greatest_twist),
+    claim("spiked", "φ of the greatest twist, °", 13.0, GRID, _draft_of_greatest(_twist)),
+    claim("spiked", "the twist rises from step to step up to φ = 13°", "Y", YES, _twist_rises_to(13.0)),
+    claim("spiked", "twist at φ = 14°, °", 0.0, _DEGREE, _at(_twist, 14.0)),
+    claim("spiked", "twist at φ = 15°, °", -21.0, _DEGREE, _at(_twist, 15.0)),
+    claim("spiked", "φ from which the drift falls (that of the greatest), °", 13.0, _FROM, _draft_of_greatest(_drift)),
+    claim(
         "spiked",
         "the speed rises with φ",
         "Y",
         exact("yes or no; a fall of up to 2 µm/s is not seen in a figure that spans 100 µm/s or more"),
         _speed_rises,
     ),
-    _claim("spiked", "greatest |d_e| for φ ≤ 2°, µm", "at most 50", FIFTY, _worst_to(2.0)),
-    _claim("spiked", "greatest φ that keeps |d_e| ≤ 50 µm, °", 2.0, GRID, _keeps),
+    claim("spiked", "greatest |d_e| for φ ≤ 2°, µm", "at most 50", FIFTY, _worst_to(2.0)),
+    claim("spiked", "greatest φ that keeps |d_e| ≤ 50 µm, °", 2.0, GRID, _keeps),
 )
 _SPIKED_ENDS = (
-    _claim("spiked_ends", "speed without errors, µm/s", 1197.0, IDEAL, _at(_speed, 0.0)),
-    _claim("spiked_ends", "φ of the greatest twist, °", 9.0, GRID, _draft_of_greatest(_twist)),
-    _claim("spiked_ends", "the twist rises from step to step up to φ = 9°", "Y", YES, _twist_rises_to(9.0)),
-    _claim("spiked_ends", "least twist, °", -90.0, _DEGREE, _least_twist),
-    _claim(
+    claim("spiked_ends", "speed without errors, µm/s", 1197.0, IDEAL, _at(_speed, 0.0)),
+    claim("spiked_ends", "φ of the greatest twist, °", 9.0, GRID, _draft_of_greatest(_twist)),
+    claim("spiked_ends", "the twist rises from step to step up to φ = 9°", "Y", YES, _twist_rises_to(9.0)),
+    claim("spiked_ends", "least twist, °", -90.0, _DEGREE, _least_twist),
+    claim(
         "spiked_ends",
         "first φ at which it flips, °",
         12.0,
@@ -164,18 +152,18 @@ _SPIKED_ENDS = (
         _first_flip,
         "The text says it of the drift, which starts again from zero with the flip.",
     ),
-    _claim(
+    claim(
         "spiked_ends",
         "|d_e| at φ = 12°, µm",
         0.0,
         absolute(10.0, "'drops to zero' in a figure of some hundred µm"),
         _at(_drift, 12.0),
     ),
-    _claim(
+    claim(
         "spiked_ends", "φ from which the speed falls (that of the greatest), °", 12.0, _FROM, _draft_of_greatest(_speed)
     ),
-    _claim("spiked_ends", "greatest |d_e| for φ ≤ 1°, µm", "at most 50", FIFTY, _worst_to(1.0)),
-    _claim("spiked_ends", "greatest φ that keeps |d_e| ≤ 50 µm, °", 1.0, GRID, _keeps),
+    claim("spiked_ends", "greatest |d_e| for φ ≤ 1°, µm", "at most 50", FIFTY, _worst_to(1.0)),
+    claim("spiked_ends", "greatest φ that keeps |d_e| ≤ 50 µm, °", 1.0, GRID, _keeps),
 )
 
 
@@ -198,7 +186,6 @@ class DraftOnly(PaperResult):
     def figure(self, data: Mapping[str, xr.Dataset], figure: Figure) -> None:
         """Draw twist, drift and speed over the draft, the spiked robot on the left, spiked ends on the right."""
         figure.set_size_inches(11.0, 9.0)
-        figure.set_layout_engine("constrained")
         axes = figure.subplots(len(METRICS), len(ROBOTS), sharex=True)
         for column, robot in enumerate(ROBOTS):
             for ax, (metric, (label, factor)) in zip(axes[:, column], METRICS.items(), strict=True):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
@@ -14,7 +14,8 @@ from ...progress import OnProgress
 from ...simulate import FLIP_DEG
 from ...sweep import DRIFT_LIMIT_M, sweep
 from ..choice import Choices
-from ..tolerance import absolute, at_most, exact
+from ..claim import Claim, Measure
+from ..tolerance import Tolerance, absolute, at_most, exact
 
 __all__ = [
     "DRIFT_LIMIT_M",
@@ -27,9 +28,10 @@ __all__ = [
     "ROBOTS",
     "YES",
     "angles",
+    "claim",
     "errors",
     "flips",
-    "of",
+    "median_of_flips",
     "robot_words",
 ]
 
@@ -98,17 +100,28 @@ def errors(
     return data.assign({name: ("robot", values, {"units": "m s-1"}) for name, values in speeds.items()})
 
 
-def of(robot: str, measure: Callable[[xr.Dataset], float | str]) -> Callable[[xr.Dataset], float | str]:
-    """Return what reads a value off one robot's part of the data.
+def claim(
+    robot: str, quantity: str, paper: float | str, tolerance: Tolerance, measure: Measure, note: str = ""
+) -> Claim:
+    """Return a claim about one of the robots.
 
     Parameters
     ----------
     robot
         One of `ROBOTS`.
+    quantity, paper, tolerance, note
+        As in `tumblers.reproduction.claim.Claim`.
     measure
-        Reads it off a Dataset without the dimension ``robot``.
+        Reads our value off a Dataset without the dimension ``robot``.
     """
-    return lambda data: measure(data.sel(robot=robot))
+    return Claim(
+        robot=robot_words(robot),
+        quantity=quantity,
+        paper=paper,
+        tolerance=tolerance,
+        measure=lambda data: measure(data.sel(robot=robot)),
+        note=note,
+    )
 
 
 def flips(twist_deg: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -120,6 +133,22 @@ def flips(twist_deg: NDArray[np.float64]) -> NDArray[np.bool_]:
         Twists after one cycle, degrees.
     """
     return np.asarray(np.abs(twist_deg) > FLIP_DEG)
+
+
+def median_of_flips(name: str, factor: float) -> Measure:
+    """Return what reads the median size of a metric where the robot flips, in words where it never does.
+
+    Parameters
+    ----------
+    name, factor
+        Key of `METRICS`, and what its values are multiplied by.
+    """
+
+    def measure(data: xr.Dataset) -> float | str:
+        values = np.abs(data[name].values)[flips(data["twist_deg"].values)] * factor
+        return float(np.median(values)) if values.size else "no flip"
+
+    return measure
 
 
 def angles(values: NDArray[np.float64], step: float) -> str:

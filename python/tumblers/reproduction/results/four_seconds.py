@@ -15,11 +15,10 @@ from ...presets import DRIVES
 from ...progress import OnProgress
 from ...simulate import simulate
 from ..choice import Choices
-from ..claim import Claim
 from ..paper_result import PaperResult
 from ..suspect import DRAFT, STANDARD, UNSTATED
 from ..tolerance import at_least
-from .errors import DRIFT_LIMIT_M, PER_METRE, PRESETS, ROBOTS, of, robot_words
+from .errors import DRIFT_LIMIT_M, PER_METRE, PRESETS, ROBOTS, claim, robot_words
 from .sets import DRAFTS
 
 __all__ = ["FourSeconds"]
@@ -62,31 +61,31 @@ class FourSeconds(PaperResult):
     suspects = (*DRAFT, *UNSTATED, *STANDARD)
     runs = len(ROBOTS)
     claims = tuple(
-        claim
+        made
         for robot in ROBOTS
-        for claim in (
-            Claim(
-                robot=robot_words(robot),
-                quantity="drifts along x: greatest |x| in 4 s, µm",
-                paper="drifts",
-                tolerance=at_least(DRIFT_LIMIT_M * PER_METRE, "beyond the paper's own limit of a straight path"),
-                measure=of(robot, _sideways),
+        for made in (
+            claim(
+                robot,
+                "drifts along x: greatest |x| in 4 s, µm",
+                "drifts",
+                at_least(DRIFT_LIMIT_M * PER_METRE, "beyond the paper's own limit of a straight path"),
+                _sideways,
             ),
-            Claim(
-                robot=robot_words(robot),
-                quantity="changes periodically: correlation of the velocity along x with that one or two cycles later",
-                paper="periodic",
-                tolerance=at_least(
+            claim(
+                robot,
+                "changes periodically: correlation of the velocity along x with that one or two cycles later",
+                "periodic",
+                at_least(
                     0.5, "a half; the velocities of two paths that have nothing to do with each other have about none"
                 ),
-                measure=of(robot, _periodic),
+                _periodic,
             ),
-            Claim(
-                robot=robot_words(robot),
-                quantity="twists or flips: greatest |twist| at the end of a cycle, °",
-                paper="twists or flips",
-                tolerance=at_least(1.0, "a degree, the last digit that the text gives of a twist"),
-                measure=of(robot, _greatest_twist),
+            claim(
+                robot,
+                "twists or flips: greatest |twist| at the end of a cycle, °",
+                "twists or flips",
+                at_least(1.0, "a degree, the last digit that the text gives of a twist"),
+                _greatest_twist,
             ),
         )
     )
@@ -112,7 +111,6 @@ class FourSeconds(PaperResult):
     def figure(self, data: Mapping[str, xr.Dataset], figure: Figure) -> None:
         """Draw the paths of the centre of mass from above, travel to the right."""
         figure.set_size_inches(9.0, 6.5)
-        figure.set_layout_engine("constrained")
         axes = figure.subplots(len(ROBOTS), 1, sharex=True)
         cycle = round(_PERIOD_S / _EVERY_S)
         for ax, robot in zip(axes, ROBOTS, strict=True):

@@ -31,7 +31,6 @@ SHAPES = {
 _GROUNDS: tuple[Ground, ...] = ("paper", "aluminium")
 _DURATION_S = 1.0
 _COLOURS = ("black", BLUE, GREEN, ORANGE)
-_ONE_OF_FOUR = exact("one of four shapes")
 
 
 def _speeds(data: xr.Dataset, ground: str) -> xr.DataArray:
@@ -68,33 +67,16 @@ class FourShapes(PaperResult):
     suspects = STANDARD
     runs = len(SHAPES) * len(_GROUNDS)
     claims = (
-        Claim(
-            robot="all four",
-            quantity="fastest on paper",
-            paper="curved",
-            tolerance=_ONE_OF_FOUR,
-            measure=_first("paper", fastest=True),
-        ),
-        Claim(
-            robot="all four",
-            quantity="slowest on paper",
-            paper="cuboid",
-            tolerance=_ONE_OF_FOUR,
-            measure=_first("paper", fastest=False),
-        ),
-        Claim(
-            robot="all four",
-            quantity="fastest on aluminium",
-            paper="curved",
-            tolerance=_ONE_OF_FOUR,
-            measure=_first("aluminium", fastest=True),
-        ),
-        Claim(
-            robot="all four",
-            quantity="slowest on aluminium",
-            paper="cuboid",
-            tolerance=_ONE_OF_FOUR,
-            measure=_first("aluminium", fastest=False),
+        *(
+            Claim(
+                robot="all four",
+                quantity=f"{'fastest' if fastest else 'slowest'} on {ground}",
+                paper=shape,
+                tolerance=exact("one of four shapes"),
+                measure=_first(ground, fastest),
+            )
+            for ground in _GROUNDS
+            for fastest, shape in ((True, "curved"), (False, "cuboid"))
         ),
         Claim(
             robot="all four",
@@ -142,7 +124,6 @@ class FourShapes(PaperResult):
     def figure(self, data: Mapping[str, xr.Dataset], figure: Figure) -> None:
         """Draw the displacements along y over time."""
         figure.set_size_inches(10.0, 4.0 * len(data))
-        figure.set_layout_engine("constrained")
         axes = figure.subplots(len(data), len(_GROUNDS), squeeze=False, sharex=True, sharey=True)
         for row, (name, found) in zip(axes, data.items(), strict=True):
             for ax, ground in zip(row, _GROUNDS, strict=True):

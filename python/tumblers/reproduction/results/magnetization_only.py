@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 import xarray as xr
@@ -13,16 +13,27 @@ from ...grid import PAPER_MAGNETIZATION_DEG
 from ...plots.style import BLUE, ORANGE
 from ...progress import OnProgress
 from ..choice import Choices
-from ..claim import Claim
+from ..claim import Measure
 from ..paper_result import PaperResult
 from ..suspect import STANDARD, UNSTATED
 from ..tolerance import absolute, exact
-from .errors import DRIFT_LIMIT_M, FIFTY, METRICS, PER_METRE, ROBOTS, angles, errors, flips, of, robot_words
+from .errors import (
+    DRIFT_LIMIT_M,
+    FIFTY,
+    METRICS,
+    PER_METRE,
+    ROBOTS,
+    angles,
+    claim,
+    errors,
+    flips,
+    median_of_flips,
+    robot_words,
+)
 from .sets import PARAMETERS
 
 __all__ = ["MagnetizationOnly"]
 
-Measure = Callable[[xr.Dataset], float | str]
 _STEP_DEG = 10.0
 _RANGES = exact("ranges on the paper's own grid of 10°")
 _ALMOST_90 = absolute(10.0, "'almost 90°' read off a figure")
@@ -79,11 +90,8 @@ def _upright(data: xr.Dataset) -> str:
 
 
 def _of_flipped(name: str, factor: float) -> Measure:
-    def measure(data: xr.Dataset) -> float | str:
-        values = np.abs(_erring(data)[name].values)[flips(_erring(data)["twist_deg"].values)] * factor
-        return float(np.median(values)) if values.size else "no flip"
-
-    return measure
+    read = median_of_flips(name, factor)
+    return lambda data: read(_erring(data))
 
 
 def _drift_near(theta2_deg: tuple[float, ...]) -> Measure:
@@ -96,60 +104,50 @@ def _drift_near(theta2_deg: tuple[float, ...]) -> Measure:
     return measure
 
 
-def _claim(robot: str, quantity: str, paper: float | str, tolerance: object, measure: Measure) -> Claim:
-    return Claim(
-        robot=robot_words(robot),
-        quantity=quantity,
-        paper=paper,
-        tolerance=tolerance,  # type: ignore[arg-type]
-        measure=of(robot, measure),
-    )
-
-
 _SYMMETRIC = absolute(5.0, "symmetric to the eye in a figure of some hundred µm/s")
 _SPIKED = (
-    _claim("spiked", "greatest |v(θ2) - v(360° - θ2)|, µm/s", 0.0, _SYMMETRIC, _asymmetry),
-    _claim("spiked", "θ2 at which it flips, °", "20 to 160, 200 to 340", _RANGES, _flipping),
-    _claim("spiked", "|twist| where it flips (median), °", 90.0, _ALMOST_90, _of_flipped("twist_deg", 1.0)),
-    _claim(
+    claim("spiked", "greatest |v(θ2) - v(360° - θ2)|, µm/s", 0.0, _SYMMETRIC, _asymmetry),
+    claim("spiked", "θ2 at which it flips, °", "20 to 160, 200 to 340", _RANGES, _flipping),
+    claim("spiked", "|twist| where it flips (median), °", 90.0, _ALMOST_90, _of_flipped("twist_deg", 1.0)),
+    claim(
         "spiked", "speed where it flips (median), µm/s", 1200.0, _NEARLY_1200, _of_flipped("speed_m_per_s", PER_METRE)
     ),
-    _claim("spiked", "θ2 without flip, °", "-10 to 10, 170 to 190", _RANGES, _upright),
-    _claim(
+    claim("spiked", "θ2 without flip, °", "-10 to 10, 170 to 190", _RANGES, _upright),
+    claim(
         "spiked",
         "|d_e| near θ2 = 50°, 140°, 220°, 310° (least within 10°, the greatest of the four), µm",
         "at most 50",
         FIFTY,
         _drift_near((50.0, 140.0, 220.0, 310.0)),
     ),
-    _claim("spiked", "speed at θ2 = 150°, µm/s", 1210.0, _TENS, _at("speed_m_per_s", 150.0, PER_METRE)),
-    _claim(
+    claim("spiked", "speed at θ2 = 150°, µm/s", 1210.0, _TENS, _at("speed_m_per_s", 150.0, PER_METRE)),
+    claim(
         "spiked", "|d_e| at θ2 = 150°, 'close to zero', µm", "at most 50", FIFTY, _size_at("drift_m", 150.0, PER_METRE)
     ),
 )
 _SPIKED_ENDS = (
-    _claim("spiked_ends", "greatest |v(θ2) - v(360° - θ2)|, µm/s", 0.0, _SYMMETRIC, _asymmetry),
-    _claim("spiked_ends", "θ2 without flip, °", "-20 to 20, 90 to 100, 170 to 190, 260 to 270", _RANGES, _upright),
-    _claim("spiked_ends", "|twist| where it flips (median), °", 90.0, _ALMOST_90, _of_flipped("twist_deg", 1.0)),
+    claim("spiked_ends", "greatest |v(θ2) - v(360° - θ2)|, µm/s", 0.0, _SYMMETRIC, _asymmetry),
+    claim("spiked_ends", "θ2 without flip, °", "-20 to 20, 90 to 100, 170 to 190, 260 to 270", _RANGES, _upright),
+    claim("spiked_ends", "|twist| where it flips (median), °", 90.0, _ALMOST_90, _of_flipped("twist_deg", 1.0)),
     *(
-        claim
+        made
         for theta2 in (100.0, 260.0)
-        for claim in (
-            _claim(
+        for made in (
+            claim(
                 "spiked_ends",
                 f"speed at θ2 = {theta2:g}°, µm/s",
                 1290.0,
                 _TENS,
                 _at("speed_m_per_s", theta2, PER_METRE),
             ),
-            _claim(
+            claim(
                 "spiked_ends",
                 f"|d_e| at θ2 = {theta2:g}°, 'close to zero', µm",
                 "at most 50",
                 FIFTY,
                 _size_at("drift_m", theta2, PER_METRE),
             ),
-            _claim(
+            claim(
                 "spiked_ends",
                 f"|twist| at θ2 = {theta2:g}°, 'minimal', °",
                 0.0,
@@ -180,7 +178,6 @@ class MagnetizationOnly(PaperResult):
     def figure(self, data: Mapping[str, xr.Dataset], figure: Figure) -> None:
         """Draw twist, drift and speed over θ2, the spiked robot on the left, spiked ends on the right."""
         figure.set_size_inches(11.0, 9.0)
-        figure.set_layout_engine("constrained")
         axes = figure.subplots(len(METRICS), len(ROBOTS), sharex=True)
         for column, robot in enumerate(ROBOTS):
             for ax, (metric, (label, factor)) in zip(axes[:, column], METRICS.items(), strict=True):

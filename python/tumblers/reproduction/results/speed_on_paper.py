@@ -100,7 +100,6 @@ class SpeedOnPaper(PaperResult):
     def figure(self, data: Mapping[str, xr.Dataset], figure: Figure) -> None:
         """Draw speed and slip over frequency, with the line without slip."""
         figure.set_size_inches(7.5, 4.2)
-        figure.set_layout_engine("constrained")
         ax = figure.subplots()
         ideal = next(iter(data.values()))["ideal_speed_m_per_s"]
         ax.plot(ideal["frequency_Hz"], ideal * 1e3, color="black", linewidth=1.0, label="2(L+H)f")

@@ -136,19 +136,21 @@ def data_table(heads: Sequence[str], rows: Iterable[Sequence[str]], numbers: Seq
     return f'<div class="wide"><table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}</tbody></table></div>\n'
 
 
-def figure(svg: bytes, words: str, caption: str = "") -> str:
+def figure(picture: bytes, words: str, caption: str = "", media: str = "image/svg+xml") -> str:
     """Return a figure inside the page.
 
     Parameters
     ----------
-    svg
+    picture
         The picture, in which nothing runs.
     words, caption
         Plain text: what is read out in place of the picture, and what stands below it.
+    media
+        Type of the picture.
     """
     below = f"<figcaption>{escape(caption)}</figcaption>" if caption else ""
-    data = b64encode(svg).decode()
-    return f'<figure><img alt="{escape(words)}" src="data:image/svg+xml;base64,{data}">{below}</figure>\n'
+    data = b64encode(picture).decode()
+    return f'<figure><img alt="{escape(words)}" src="data:{media};base64,{data}">{below}</figure>\n'
 
 
 def grid(figures: Iterable[str]) -> str:

@@ -1,0 +1,40 @@
+"""A folder that a command writes its files into."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+
+from .errors import InputError
+
+__all__ = ["output_folder"]
+
+
+def output_folder(option: str, folder: Path, names: Iterable[str]) -> None:
+    """Refuse a folder that could not be written to in the end, before anything is computed.
+
+    Parameters
+    ----------
+    option
+        What it was given with.
+    folder
+        Where the files go; made later if missing.
+    names
+        The files' names.
+
+    Raises
+    ------
+    InputError
+        A file, a folder that can be neither made nor written to, or one that has folders by the files' names.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise InputError(option, f"the file '{folder}'", "a folder")
+    if not folder.exists() and not folder.parent.is_dir():
+        raise InputError(option, f"'{folder}'", f"a folder in one that exists, '{folder.parent}' does not")
+    written = folder if folder.exists() else folder.parent
+    if not os.access(written, os.W_OK | os.X_OK):
+        raise InputError(option, f"'{folder}'", f"a folder that can be written to, '{written}' cannot")
+    for name in names:
+        if (folder / name).is_dir():
+            raise InputError(option, f"the folder '{folder / name}'", f"a folder in which {name} can be written")
