@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from math import atan2, cos, degrees, hypot, inf, sin
+from collections.abc import Callable
+from math import atan2, cos, degrees, hypot, sin
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
-from tumblers.diagnosis.estimate import _gradients, _way_inside
+from tumblers.diagnosis.estimate import _SIDE, _ends, _gradients, _whole_way
 from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects.magnetization_misalignment import MagnetizationMisalignment
@@ -74,21 +75,48 @@ def box() -> Hypothesis:
 @pytest.mark.parametrize(
     ("point", "direction", "way"),
     [
-        # The nearer of the two sides ends it, either way.
-        ((0.2, 0.1), (0.3, 0.1), 2.0),
-        ((0.2, 0.1), (-0.3, -0.1), 4.0),
-        ((0.2, 0.1), (0.1, -0.3), 2.0),
-        # Along an axis the other coordinate never ends it, not even from its very edge.
+        # The farther of the two sides ends it, either way: what is at its end stays there.
+        ((0.2, 0.1), (0.3, 0.1), 9.0),
+        ((0.2, 0.1), (-0.3, -0.1), 6.0),
+        ((0.2, 0.1), (0.1, -0.3), 6.0),
+        # What does not move never ends it.
         ((0.2, 0.1), (0.0, -0.2), 3.0),
         ((0.8, 0.0), (0.0, 0.5), 2.0),
         ((0.8, 1.0), (-0.9, 0.0), 2.0),
-        ((0.8, 0.0), (0.1, 0.1), 0.0),
+        ((0.8, 0.0), (0.1, 0.1), 10.0),
         # A fit keeps a hair's breadth away from its bounds, on either side of them.
-        ((0.8 + 1e-9, 0.0), (0.1, 0.1), 0.0),
-        ((0.2, 0.1), (0.0, 0.0), inf),
+        ((0.8 + 1e-9, 1.0), (0.1, 0.0), 0.0),
+        ((0.2, 0.1), (0.0, 0.0), 0.0),
     ],
 )
-def test_the_way_inside_a_range_ends_at_its_nearest_side(
+def test_a_whole_way_ends_at_the_farthest_side_of_a_range(
     point: tuple[float, float], direction: tuple[float, float], way: float
 ) -> None:
-    assert _way_inside(box(), np.array(point), np.array(direction)) == pytest.approx(way)
+    assert _whole_way(box(), np.array(point), np.array(direction)) == pytest.approx(way, abs=1e-7)
+
+
+# The stretch that holds an end is 0.25 ways long near the start and 1.0 farther out, and is halved five times.
+NEAR, FAR = 0.25 * _SIDE / 32.0, 1.0 * _SIDE / 32.0
+
+
+@pytest.mark.parametrize(
+    ("rise", "end", "off"),
+    [
+        # A Gaussian ends where it should, also one that is narrower or wider than Laplace's.
+        (lambda way: way**2, _SIDE, NEAR),
+        (lambda way: (way / 0.1) ** 2, 0.1 * _SIDE, NEAR),
+        (lambda way: (way / 2.5) ** 2, 2.5 * _SIDE, FAR),
+        # A threshold ends it there, however high it is.
+        (lambda way: 1e6 * (way > 1.0), 1.0, NEAR),
+        # A narrow ridge within the well does not.
+        (lambda way: way**2 + 100.0 * (0.3 < way < 0.6), _SIDE, NEAR),
+        # Where nothing rises, the range ends it.
+        (lambda way: 0.0 * way, 20.0, 0.0),
+        # What is better than the fit counts: from there on it rises.
+        (lambda way: (way - 1.5) ** 2 - 1.5**2, 1.5 + _SIDE, NEAR * 4.0),
+    ],
+)
+def test_an_interval_ends_where_the_objective_stays_up(rise: Callable[[float], float], end: float, off: float) -> None:
+    side = (0, 1.0)
+    found = _ends(lambda ways: [rise(way) for _, way in ways], {side: 20.0})
+    assert found[side] == pytest.approx(end, abs=off + 1e-12)

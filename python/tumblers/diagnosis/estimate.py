@@ -1,10 +1,12 @@
 """Intervals of a hypothesis's parameters.
 
 With q the derivative of a parameter v by the fit's coordinates u and C their posterior covariance, Laplace's standard
-deviation is `σ = √(qᵀ C q)`, and the other coordinates follow along the ridge `u ± t C q/σ` of the posterior. How much
-the objective really rises there stretches or shrinks each side so that it rises by 1.645², the 90 % interval of a
-likelihood ratio; the end is `v ± t σ`. Where the ridge leaves the range, the rise is measured at its edge. Where the
-objective rises by a step, at a threshold, the way to the step is halved.
+deviation is `σ = √(qᵀ C q)`, and the other coordinates follow along the ridge `u ± t C q/σ` of the posterior, as far as
+their ranges let them. The objective is measured along it, and an interval ends at the farthest t at which it is no more
+than 1.645² above the least that was met on the way: the 90 % interval of a likelihood ratio. Where motion hops the
+objective is rough, and what is beyond a small rise may be as good as before it; where it rises by a step, at a
+threshold, the way to the step is halved. All of what may move the path counts as noise here, not only what made the
+fit likeliest: that was chosen for leaving least, and would say too little of what is not known.
 """
 
 from __future__ import annotations
@@ -16,24 +18,22 @@ from numpy.typing import NDArray
 
 from .attribute import Attribution
 from .contender import Contender
-from .fit import Fitter
+from .fit import Fit, Fitter
 from .hypothesis import Hypothesis
 from .result import Interval
 
 __all__ = ["intervals"]
 
 Floats = NDArray[np.float64]
-# By parameter and direction, how far along its ridge, in standard deviations.
-_Ways = dict[tuple[int, float], float]
+# A parameter and a direction; ways along its ridge are in standard deviations.
+_Side = tuple[int, float]
 
 _SIDE = 1.645
-# A profile that is flatter or steeper than this is not trusted further in one round.
-_LEAST_RISE, _MOST_RISE = 0.3, 30.0
-_ROUNDS = 2
-# A side whose end rises by so many times too much is halved so often.
-_TOO_FAR, _HALVINGS = 2.0, 6
-# So far must the ridge go inside the range, in standard deviations, for a rise that means something.
-_LEAST_WAY = 0.2
+# Where the objective is measured first, in ways to the ends that Laplace's Gaussian would have; and how often the way
+# is doubled where it has not risen there.
+_WAYS, _DOUBLINGS = (0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0), 4
+# How often the stretch that holds an end is halved.
+_HALVINGS = 5
 _IDENTIFIED = 0.5
 _HALF_TURN = 180.0
 
@@ -48,35 +48,39 @@ def intervals(fitter: Fitter, attribution: Attribution, contender: Contender) ->
     attribution, contender
         Every hypothesis, and the one whose parameters are wanted.
     """
-    fit = contender.fit
-    if fit is None:
+    if contender.fit is None:
         return {}
+    comparison = fitter.comparison
+    before = comparison.floors
+    comparison.take_noise_of(contender.effects)
+    fit = fitter.fit(contender.fit.hypothesis, contender.fit.point, evaluations=1)
+    found = _around(fitter, attribution.dispersion, fit)
+    comparison.floors = before
+    return found
+
+
+def _around(fitter: Fitter, dispersion: float, fit: Fit) -> dict[tuple[str, str], Interval]:
     hypothesis = fit.hypothesis
     gradients = _gradients(hypothesis, fit.point)
-    covariance = attribution.covariance(contender)
+    covariance = fit.covariance(dispersion)
     deviation = np.sqrt(np.maximum(np.einsum("jp,pq,jq->j", gradients, covariance, gradients), 0.0))
     ridges = gradients @ covariance / np.maximum(deviation, 1e-300)[:, None]
     sides = [(j, sign) for j in range(len(fit.point)) if deviation[j] > 0.0 for sign in (-1.0, 1.0)]
-    reach = dict.fromkeys(((j, sign) for j in range(len(fit.point)) for sign in (-1.0, 1.0)), _SIDE)
-    inside = {side: _way_inside(hypothesis, fit.point, side[1] * ridges[side[0]]) for side in sides}
-    sides = [side for side in sides if inside[side] > _LEAST_WAY]
 
-    def rises(ways: _Ways) -> _Ways:
+    def at(side: _Side, way: float) -> Floats:
+        j, sign = side
+        return np.asarray(np.clip(fit.point + sign * way * ridges[j], hypothesis.low, hypothesis.high))
+
+    def rises(ways: list[tuple[_Side, float]]) -> list[float]:
         """Return how much the objective rises at some ways along the sides' ridges."""
-        points = [fit.point + sign * way * ridges[j] for (j, sign), way in ways.items()]
+        points = [at(side, way) for side, way in ways]
         residuals = fitter.residuals(hypothesis, points)
-        return {
-            side: (fitter.cost(residual, point) - contender.cost) / attribution.dispersion
-            for side, point, residual in zip(ways, points, residuals, strict=True)
-        }
+        return [
+            (fitter.cost(residual, point) - fit.cost) / dispersion
+            for point, residual in zip(points, residuals, strict=True)
+        ]
 
-    for _ in range(_ROUNDS):
-        ways = {side: min(reach[side], inside[side]) for side in sides}
-        for side, rise in rises(ways).items():
-            # What the rise should be at this way.
-            share = (ways[side] / reach[side]) ** 2
-            reach[side] *= float(np.sqrt(_SIDE**2 / np.clip(rise / share, _LEAST_RISE, _MOST_RISE)))
-    reach |= _before_steps(rises, {side: min(reach[side], inside[side]) for side in sides})
+    reach = _ends(rises, {side: _whole_way(hypothesis, fit.point, side[1] * ridges[side[0]]) for side in sides})
     out = {}
     estimates = hypothesis.values(fit.point)
     parameters = [parameter for kind in hypothesis.kinds for parameter in kind.parameters]
@@ -85,21 +89,40 @@ def intervals(fitter: Fitter, attribution: Attribution, contender: Contender) ->
         low, high = min(hypothesis.ranges[j][0], estimates[j]), max(hypothesis.ranges[j][1], estimates[j])
         if parameter.turns:
             low, high = estimates[j] - _HALF_TURN, estimates[j] + _HALF_TURN
-        ends = [float(np.clip(estimates[j] + sign * reach[j, sign] * deviation[j], low, high)) for sign in (-1.0, 1.0)]
+        moved = [hypothesis.values(at(side, reach[side]))[j] - estimates[j] for side in sides if side[0] == j]
+        if parameter.turns:
+            moved = [(change + _HALF_TURN) % (2.0 * _HALF_TURN) - _HALF_TURN for change in moved]
+        ends = [float(np.clip(estimates[j] + end, low, high)) for end in (min([0.0, *moved]), max([0.0, *moved]))]
         width = (ends[1] - ends[0]) / max(high - low, 1e-300)
         out[key] = Interval(float(estimates[j]), ends[0], ends[1], bool(width < _IDENTIFIED))
     return out
 
 
-def _before_steps(rises: Callable[[_Ways], _Ways], ends: _Ways) -> _Ways:
-    """Return the ways to where the objective rises by a step, for the ends that are beyond one."""
-    below = dict.fromkeys(ends, 0.0)
-    above = {side: ends[side] for side, rise in rises(ends).items() if rise > _TOO_FAR * _SIDE**2}
-    for _ in range(_HALVINGS if above else 0):
-        middles = {side: 0.5 * (below[side] + end) for side, end in above.items()}
-        for side, rise in rises(middles).items():
-            (above if rise > _SIDE**2 else below)[side] = middles[side]
-    return above
+def _ends(rises: Callable[[list[tuple[_Side, float]]], list[float]], whole: dict[_Side, float]) -> dict[_Side, float]:
+    """Return by side the farthest way, up to a whole one, at which the objective is near the least that is met."""
+    known: dict[_Side, dict[float, float]] = {side: {0.0: 0.0} for side in whole}
+
+    def measure(wanted: list[tuple[_Side, float]]) -> None:
+        for (side, way), rise in zip(wanted, rises(wanted), strict=True):
+            known[side][way] = rise
+
+    def last_near(side: _Side) -> float:
+        least = min(known[side].values())
+        return max(way for way, rise in known[side].items() if rise <= least + _SIDE**2 or way == 0.0)
+
+    measure([(side, way) for side in whole for way in sorted({min(_SIDE * k, whole[side]) for k in _WAYS})])
+    for _ in range(_DOUBLINGS):
+        flat = [side for side in whole if last_near(side) == max(known[side]) < whole[side]]
+        measure([(side, min(2.0 * max(known[side]), whole[side])) for side in flat])
+    for _ in range(_HALVINGS):
+        middles = []
+        for side in whole:
+            near = last_near(side)
+            beyond = [way for way in known[side] if way > near]
+            if beyond:
+                middles.append((side, 0.5 * (near + min(beyond))))
+        measure(middles)
+    return {side: last_near(side) for side in whole}
 
 
 def _gradients(hypothesis: Hypothesis, point: Floats) -> Floats:
@@ -116,9 +139,8 @@ def _gradients(hypothesis: Hypothesis, point: Floats) -> Floats:
     return np.column_stack(columns)
 
 
-def _way_inside(hypothesis: Hypothesis, point: Floats, direction: Floats) -> float:
-    """Return how far a point can go in a direction before it leaves the range."""
+def _whole_way(hypothesis: Hypothesis, point: Floats, direction: Floats) -> float:
+    """Return how far a point can go in a direction before all its coordinates are at an end of their range."""
     with np.errstate(divide="ignore", invalid="ignore"):
         ways = np.where(direction > 0.0, (hypothesis.high - point) / direction, (hypothesis.low - point) / direction)
-    ways = np.where(np.abs(direction) > 1e-12, ways, np.inf)
-    return float(max(np.min(ways), 0.0))
+    return float(max(np.max(np.where(np.abs(direction) > 1e-12, ways, 0.0)), 0.0))

@@ -75,6 +75,20 @@ class Fit:
     cost: float
     jacobian: Floats
 
+    def information(self, dispersion: float) -> Floats:
+        """Return the inverse of `covariance`, shape (p, p)."""
+        return self.jacobian.T @ self.jacobian / dispersion + np.eye(len(self.point)) / PRIOR_SIGMA**2
+
+    def covariance(self, dispersion: float) -> Floats:
+        """Return the posterior covariance of u by Laplace's Gaussian, shape (p, p).
+
+        Parameters
+        ----------
+        dispersion
+            How many numbers count as one.
+        """
+        return np.asarray(np.linalg.inv(self.information(dispersion)), dtype=np.float64)
+
 
 class _Moved(NamedTuple):
     """Points beside one, and how wrong the hypothesis is there."""

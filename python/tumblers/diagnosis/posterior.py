@@ -60,7 +60,7 @@ def samples(
         return ((),)
     rng = np.random.default_rng(seed)
     hypothesis, free = fit.hypothesis, fit.hypothesis.high > fit.hypothesis.low
-    covariance = attribution.covariance(contender)[np.ix_(free, free)]
+    covariance = fit.covariance(attribution.dispersion)[np.ix_(free, free)]
     middle = np.clip(fit.point, hypothesis.low, hypothesis.high)
     wide = [
         (0.5, middle[free], covariance),

@@ -56,6 +56,9 @@ _MANY, _FOLLOWED = 4, ((0.1, None), (0.25, 4), (0.5, 2))
 # much of its objective beyond it; seconds that are fitted with each; singles that are joined two and two, and joints
 # that are fitted.
 _FIRSTS, _NEAR_BEST, _SECONDS, _JOINED, _JOINTS = 2, 0.5, 3, 4, 2
+# Points around a fit that are looked at, their spread in standard deviations and in shares of the ranges, how many of
+# them are fitted on in so many trial points, and how often all this.
+_SHAKEN, _SPREADS, _SHARES, _SHAKEN_FITS, _SHAKEN_POINTS, _SHAKES = 18, (1.0, 2.0, 4.0), (0.02, 0.05, 0.1), 2, 3, 2
 # Pairs whose beginnings are searched, and singles for which one of the best pair is exchanged.
 _PAIRS_REFINED, _EXCHANGED = 2, 6
 
@@ -100,6 +103,7 @@ class Search:
             self.fitter.take_likeliest_noise(())
             nominal, singles = of_nominal(self.fitter), self._judged_again(singles)
         singles = self._settled(singles)
+        singles = sorted([self._shaken(singles[0]), *singles[1:]], key=_total)
         # What is weak is found where it starts: only a strong cause has minima of its own, far away.
         strong = not is_right(self.comparison, nominal.residual)
         if strong and self._is_wanting(singles[0]):
@@ -108,6 +112,7 @@ class Search:
             return self._against_the_best(nominal, self._each_by_itself(singles))
         pairs = self._pairs(singles, strong)
         if pairs:
+            pairs = sorted([self._shaken(pairs[0]), *pairs[1:]], key=_total)
             singles = [self._nested(pairs[0], singles[0]), *singles[1:]]
         return self._against_the_best(nominal, self._each_by_itself([*singles, *pairs]))
 
@@ -231,6 +236,38 @@ class Search:
             here = self.fitter.fit(best.fit.hypothesis, best.point, evaluations=1)
             made[k] = replace(of_fit(self.fitter, here), settled=True)
         return sorted(made, key=_total)
+
+    def _shaken(self, contender: Contender) -> Contender:
+        """Look around a fit for a better one, which small local minima keep least squares from.
+
+        Where motion hops, a small change of a parameter changes the differences by steps: the objective is rough.
+        """
+        rng, best = np.random.default_rng(self.seed), contender
+        for k in range(_SHAKES):
+            self.tell("around the best", k, _SHAKES)
+            assert best.fit is not None
+            hypothesis = best.fit.hypothesis
+            self.fitter.take_likeliest_noise(best.effects)
+            points = self._around(best.fit, rng)
+            residuals = self.fitter.residuals(hypothesis, points)
+            costs = [self.fitter.cost(residual, point) for residual, point in zip(residuals, points, strict=True)]
+            starts = [points[n] for n in np.argsort(costs, kind="stable")[:_SHAKEN_FITS]]
+            fits = [self.fitter.fit(hypothesis, start, evaluations=_SHAKEN_POINTS) for start in starts]
+            other = min((self._against_itself(fit) for fit in fits), key=_total)
+            if other.total > best.total - _ENOUGH:
+                break
+            best = replace(other, settled=True)
+        return best
+
+    def _around(self, fit: Fit, rng: np.random.Generator) -> list[Floats]:
+        """Return points around a fit, within the range."""
+        count = len(fit.point)
+        root = np.linalg.cholesky(fit.covariance(self.comparison.alike))
+        spreads = [*(spread * root for spread in _SPREADS), *(share * np.eye(count) for share in _SHARES)]
+        low, high = fit.hypothesis.low, fit.hypothesis.high
+        return [
+            np.clip(fit.point + spreads[k % len(spreads)] @ rng.normal(size=count), low, high) for k in range(_SHAKEN)
+        ]
 
     def _each_by_itself(self, contenders: Sequence[Contender]) -> list[Contender]:
         """Hold what comes near the best against its own noise too: another's may flatter it, or wrong it."""

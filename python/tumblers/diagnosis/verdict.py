@@ -31,7 +31,9 @@ def judge(comparison: Comparison, attribution: Attribution, foretold: bool) -> t
         Whether the best hypothesis stood on trials that its fit had not seen.
     """
     nominal, best = attribution.nominal, attribution.contenders[0]
-    if attribution.nominal_is_right and (not best.names or nominal.probability > _LEAST_DOUBT):
+    # What is wide enough around the nominal model hides a gap: where another is likelier, against its noise too.
+    doubtful = nominal.probability > _LEAST_DOUBT and is_right(comparison, nominal.residual)
+    if attribution.nominal_is_right and (not best.names or doubtful):
         return "no_gap", nominal
     if not best.names:
         return "unexplained", best

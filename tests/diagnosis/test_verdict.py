@@ -1,0 +1,55 @@
+"""What is concluded from the evidence and from what is left."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tumblers.diagnosis.attribute import Attribution
+from tumblers.diagnosis.comparison import Residual
+from tumblers.diagnosis.contender import Contender
+from tumblers.diagnosis.verdict import judge
+
+COUNT = 400
+NO_NUISANCES = np.zeros(0)
+
+
+def contender(name: str, left: float, probability: float) -> Contender:
+    """Return a hypothesis that leaves so many sigmas everywhere in its one trial."""
+    residual = Residual((np.full(COUNT, left),), NO_NUISANCES, NO_NUISANCES, NO_NUISANCES, NO_NUISANCES)
+    return Contender((name,) if name else (), None, residual, 0.0, probability=probability)
+
+
+@pytest.mark.parametrize(
+    ("nominal_is_right", "left", "probability", "foretold", "verdict"),
+    [
+        # Nothing speaks against the nominal model, and it is not much less probable.
+        (True, 1.0, 0.2, True, "no_gap"),
+        # It is far less probable.
+        (True, 1.0, 0.01, True, "explained"),
+        # Its own wide noise hides what it leaves against the noise around a likelier one.
+        (True, 1.7, 0.2, True, "explained"),
+        (False, 1.0, 0.2, True, "explained"),
+        (False, 1.0, 0.2, False, "unexplained"),
+    ],
+)
+def test_a_likelier_effect_is_named_where_the_nominal_model_leaves_a_gap_against_either_noise(
+    nominal_is_right: bool, left: float, probability: float, foretold: bool, verdict: str
+) -> None:
+    best, nominal = contender("viscous_drag", 1.0, 0.8), contender("", left, probability)
+    comparison = SimpleNamespace(sizes=(COUNT,))
+    attribution = Attribution((best, nominal), 1.0, nominal_is_right)
+    found, chosen = judge(comparison, attribution, foretold)  # type: ignore[arg-type]
+    assert (found, chosen) == (verdict, nominal if verdict == "no_gap" else best)
+
+
+@pytest.mark.parametrize(("nominal_is_right", "verdict"), [(True, "no_gap"), (False, "unexplained")])
+def test_where_nothing_is_likelier_than_the_nominal_model_it_is_right_or_nothing_is(
+    nominal_is_right: bool, verdict: str
+) -> None:
+    nominal, other = contender("", 1.7, 0.8), contender("viscous_drag", 1.7, 0.1)
+    attribution = Attribution((nominal, other), 1.0, nominal_is_right)
+    found, chosen = judge(SimpleNamespace(sizes=(COUNT,)), attribution, True)  # type: ignore[arg-type]
+    assert (found, chosen) == (verdict, nominal)
