@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
 from tumblers import Scenario, faster_cases, preferred_cases, preset_scenario, simulate, sweep
+from tumblers.effects.size_error import SizeError
 from tumblers.plots import (
     figure_bytes,
     plot_contact_modes,
@@ -101,6 +103,15 @@ def test_the_view_from_above_has_the_real_outline(run: xr.Dataset) -> None:
     np.testing.assert_allclose(corners[:, 1].max(), np.concatenate(outline)[:, 0].max() * 1e6, rtol=1e-9)
     assert ax.yaxis_inverted()
     assert "µm" in ax.get_xlabel()
+
+
+def test_the_view_from_above_has_the_body_with_every_effect() -> None:
+    scenario = preset_scenario("cuboid_on_paper", duration_s=0.002)
+    ax = plot_top_view(simulate(replace(scenario, effects=(SizeError(length_factor=2.0),))), snapshots=1)
+    (shot,) = (c for c in ax.collections if isinstance(c, PolyCollection))
+    corners = np.concatenate([path.vertices for path in shot.get_paths()])
+    # Twice the 800 µm of the scenario's own robot.
+    assert np.ptp(corners[:, 0]) == pytest.approx(1600.0)
 
 
 @pytest.mark.parametrize("name", ["twist_deg", "drift_m"])

@@ -4,10 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 import tumblers
 from tumblers import InputError, Scenario, StaticField, preset_scenario
+from tumblers.effects.size_error import SizeError
 from tumblers.studies.ascent import Ascent, Slopes, bisections
+from tumblers.studies.plots import plot_climb
 
 COARSE = [0.0, 20.0, 40.0, 60.0, 80.0]
 
@@ -116,3 +119,13 @@ def test_a_field_without_cycles_is_refused() -> None:
     still = replace(scenario("cuboid", "paper"), field=StaticField(strength_T=0.01, direction=(0.0, 1.0, 0.0)))
     with pytest.raises(InputError, match=r"field\.kind: found 'static', expected 'rotating'"):
         tumblers.climb(still)
+
+
+def test_the_way_without_slip_is_that_of_the_body_with_every_effect() -> None:
+    cuboid = replace(scenario("cuboid", "paper"), effects=(SizeError(length_factor=1.5),))
+    result = tumblers.climb(cuboid, slopes_deg=[0.0])
+    # Without a slope it does not slip: the way of a cycle is the perimeter.
+    assert float(result.mean_share[0]) == pytest.approx(1.0, abs=0.01)
+    (ax,) = plot_climb(result, Figure()).axes
+    (without_slip,) = (line for line in ax.get_lines() if line.get_label() == "without slip")
+    assert without_slip.get_ydata()[0] == pytest.approx(float(result.speed_m_per_s[0]) * 1e6, rel=0.01)

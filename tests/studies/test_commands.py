@@ -11,7 +11,9 @@ from pathlib import Path
 import pytest
 import xarray as xr
 
-from tumblers import drive, preset_scenario
+import tumblers
+from tumblers import Scenario, drive, preset_scenario
+from tumblers.studies.robust import Errors
 
 COMMAND = [sys.executable, "-m", "tumblers"]
 DESIGN = ["design", "--robot", "spiked.toml", "--samples", 8, "--draws", 8, "--generations", 1]
@@ -91,6 +93,7 @@ def test_a_study_writes_its_result_and_its_figure(
     [
         (["climb", "--out", "a.nc"], "--robot"),
         (["climb", "--robot", "cube", "--out", "a.nc"], "--robot: found 'cube'"),
+        (["climb", "--robot", "", "--out", "a.nc"], "--robot: found '', expected spiked, "),
         (["climb", "--robot", "cuboid", "--substrate", "ice", "--out", "a.nc"], "--substrate: found 'ice'"),
         (["climb", "--robot", "cuboid", "--field", "1T", "--out", "a.nc"], "--field: found '1T'"),
         (["climb", "--robot", "cuboid", "--out", "a.txt"], "--out: found 'a.txt'"),
@@ -104,6 +107,7 @@ def test_a_study_writes_its_result_and_its_figure(
         (["climb", "--robot", "bad.toml", "--out", "a.nc"], "bad.toml: robot.mass_kg: found -1.0"),
         (["tolerance", "--robot", "spiked", "--out", "a.nc", "--draft-model", "mine"], "--draft-model: found 'mine'"),
         (["tolerance", "--robot", "spiked", "--out", "a.nc", "--drift-limit-um", "0"], "--drift-limit-um: found 0.0"),
+        (["tolerance", "--robot", "spiked", "--out", "a.nc", "--drift-limit-um", "-5"], "--drift-limit-um: found -5.0"),
         (["tolerance", "--robot", "spiked", "--out", "a.nc", "--drafts", "1:3"], "--drafts: found [1.0, 2.0, 3.0]"),
         (["design", "--robot", "spiked", "--out", "a.nc", "--samples", "9"], "--samples: found 9"),
         (["design", "--robot", "spiked", "--out", "a.nc", "--draws", "9"], "--draws: found 9"),
@@ -172,3 +176,25 @@ def test_ctrl_c_keeps_the_parts_of_a_design(tmp_path: Path) -> None:
     )
     assert {file.name for file in tmp_path.iterdir()} == {"out.nc.parts", "spiked.toml"}
     assert all(file.suffix == ".json" for file in parts.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("content", "words"), [("half of", "text that is no JSON in"), ('{"speed_m_per_s": [1.0]}', "something else in")]
+)
+def test_a_broken_part_gets_one_line_and_stays(tmp_path: Path, content: str, words: str) -> None:
+    scenario = Scenario.load(tmp_path / "spiked.toml")
+    parts = tmp_path / "out.nc.parts"
+    tumblers.design(scenario, samples=8, generations=1, errors=Errors(draws=8), parts=parts)
+    before = {file.name for file in parts.iterdir()}
+    for name in ("samples-00000", "nominal-00001", "candidates"):
+        part = parts / f"{name}.json"
+        whole = part.read_text()
+        part.write_text(content)
+        done = tumble(*DESIGN, "--out", "out.nc", cwd=tmp_path)
+        assert (done.returncode, done.stdout) == (2, "")
+        assert done.stderr.startswith(f"tumblers: --out: found {words} out.nc.parts/{name}.json, expected a part")
+        assert done.stderr.count("\n") == 1
+        assert part.read_text() == content
+        part.write_text(whole)
+    assert {file.name for file in parts.iterdir()} == before
+    assert not (tmp_path / "out.nc").exists()

@@ -10,9 +10,11 @@ import xarray as xr
 
 import tumblers
 from tumblers import InputError, Scenario, preset_scenario
+from tumblers.effects.field_rolloff import FieldRolloff
 from tumblers.studies.family import family_of
 from tumblers.studies.front import pareto_front
 from tumblers.studies.robust import Errors
+from tumblers.studies.space import DesignSpace
 from tumblers.studies.tipping import tipping_field_T, tipping_torque_N_m
 
 SMALL = {"samples": 8, "generations": 2, "errors": Errors(draws=8)}
@@ -118,6 +120,13 @@ def test_a_field_too_weak_to_tip_a_design_gives_it_no_merit(spiked: Scenario) ->
     assert not bool((result.front & ~turns).any())
 
 
+def test_the_field_that_tips_a_design_is_that_with_every_effect(spiked: Scenario) -> None:
+    rolled = replace(spiked, effects=(FieldRolloff(time_constant_s=0.1),))
+    strength = rolled.effective().field.strength_T
+    assert strength < 0.2 * spiked.field.strength_T
+    assert DesignSpace(rolled, 1.0).turns(np.array([0.99, 1.01]) * strength).tolist() == [True, False]
+
+
 class Stopped(Exception):
     pass
 
@@ -194,3 +203,13 @@ def test_a_robust_design_that_is_no_better_gets_a_warning(found: xr.Dataset) -> 
     assert warnings(clean.assign_attrs(robust_gain_m_per_s=2e-4, robust_gain_error_m_per_s=1e-4)) == []
     (line,) = warnings(clean.assign_attrs(robust_gain_m_per_s=-2e-4, robust_gain_error_m_per_s=1e-4))
     assert line.startswith("the robust design is no better than the nominal one")
+
+
+def test_designs_whose_runs_failed_are_counted(found: xr.Dataset) -> None:
+    from tumblers.studies.words import warnings
+
+    lost = found.error_speed_m_per_s.where(np.arange(found.sizes["design"]) > 1)
+    assert "2 of 8 designs have runs that failed, and no speed for it" in warnings(
+        found.assign(error_speed_m_per_s=lost)
+    )
+    assert not any("designs have runs" in line for line in warnings(found))

@@ -67,3 +67,13 @@ def test_convergence_has_a_panel_for_each_number() -> None:
     curves = [line for line in shown[1].get_lines() if line.get_label() != "the paper"]
     assert len(curves) == 3
     assert curves[0].get_ydata() == pytest.approx(result.value.values[1, 0, :, 0] * 1e6)
+
+
+@pytest.mark.parametrize(("count", "columns"), [(1, 1), (2, 2), (4, 3)])
+def test_convergence_leaves_no_empty_columns(count: int, columns: int) -> None:
+    numbers = ["spiked_speed", "spiked_ends_speed", "spiked_drift", "spiked_twist"][:count]
+    result = tumblers.convergence(numbers=numbers, steps_s=[5e-4], torques=["end_of_step"], e_r_m=[0.1])
+    figure = plot_convergence(result, Figure())
+    shown = [ax.get_subplotspec() for ax in figure.axes if ax.get_visible()]
+    assert {spec.get_gridspec().ncols for spec in shown if spec is not None} == {columns}
+    assert len(shown) == count

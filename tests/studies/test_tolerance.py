@@ -8,6 +8,7 @@ import xarray as xr
 
 import tumblers
 from tumblers import InputError, Scenario, preset_scenario
+from tumblers.studies.words import tolerance_words
 
 GRID = {
     "drafts_deg": [0.0, 1.0, 2.0, 3.0],
@@ -66,6 +67,26 @@ def test_joint_tolerances_are_kept_and_no_greater_ones_are(found: xr.Dataset, na
         assert bool(inside.sel(draft_deg=inside.draft_deg <= least).all())
         beyond = inside.sel(draft_deg=inside.draft_deg > least)
         assert beyond.size == 0 or not bool(beyond.isel(draft_deg=0).all())
+
+
+def test_the_papers_box_is_judged_where_the_grid_has_its_corners(released: Scenario, found: xr.Dataset) -> None:
+    box = found.sel(theta1_deg=10.0, draft_deg=slice(0.0, 2.0), theta2_deg=slice(-10.0, 10.0))
+    assert found.attrs["paper_box_kept"] == pytest.approx(float(box.kept.mean()))
+    assert found.attrs["paper_box_drift_m"] == float(abs(box.drift_m).max())
+    assert found.attrs["joint_theta2_draft_deg"] == 2.0
+    for drafts, theta2 in (([0.0, 1.0], [-10.0, 0.0, 10.0]), ([0.0, 2.0], [0.0, 10.0])):
+        small = tumblers.tolerance(released, drafts_deg=drafts, theta1_deg=[0.0, 10.0], theta2_deg=theta2)
+        assert np.isnan(small.attrs["paper_box_kept"])
+        assert np.isnan(small.attrs["paper_box_drift_m"])
+        assert small.attrs["joint_theta2_draft_deg"] == drafts[-1]
+        said = tolerance_words(small)
+        assert f"; with φ ≤ {drafts[-1]:g}° " in said
+        assert said.endswith("|θ2| ≤ 10°: not judged, the grid has not its corners")
+    # A range of steps may end a rounding above 2.
+    rounded = tumblers.tolerance(
+        released, drafts_deg=[0.0, 2.0 + 1e-15], theta1_deg=[0.0, 10.0], theta2_deg=[-10.0, 0.0, 10.0]
+    )
+    assert 0.0 <= rounded.attrs["paper_box_kept"] <= 1.0
 
 
 def test_a_wider_limit_bears_more(released: Scenario, found: xr.Dataset) -> None:

@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from time import perf_counter
-from typing import TYPE_CHECKING, Annotated, Any, get_args
+from typing import Annotated, Any, get_args
 
 import typer
 
-from ..check import choice
-from ..errors import InputError
+from ..check import choice, number
 from ..options import as_option, numbers
 from ..robot import DraftModel
 from .defaults import (
@@ -34,11 +29,8 @@ from .defaults import (
     THETA2_DEG,
     TORQUES,
 )
+from .finish import finish, finished_design, resumable
 from .options import as_options, outputs, prepared, words_of
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 __all__ = ["climb", "convergence", "design", "tolerance"]
 
@@ -85,7 +77,7 @@ def climb(
     from .words import climb_words
 
     with as_options():
-        _finish(
+        finish(
             lambda: run(
                 scenario,
                 slopes_deg=slopes_deg,
@@ -138,10 +130,13 @@ def tolerance(
     from .tolerance import tolerance as run
     from .words import tolerance_words
 
-    limit_m = DRIFT_LIMIT_M if drift_limit_um is None else drift_limit_um * 1e-6
+    limit_m = DRIFT_LIMIT_M
+    if drift_limit_um is not None:
+        # In the option's own unit, as it was typed.
+        limit_m = 1e-6 * number("--drift-limit-um", drift_limit_um, above=0.0)
 
     with as_options():
-        _finish(
+        finish(
             lambda: run(scenario, drift_limit_m=limit_m, **grid, threads=jobs, progress=True),
             tolerance_words,
             out,
@@ -182,7 +177,7 @@ def design(
     from .words import design_words
 
     parts = out.with_name(f"{out.name}.parts")
-    with as_options(), _resumable(parts):
+    with as_options(), resumable(parts):
         errors = Errors(draft_most_deg=draft_most, axis_sigma_deg=axis_sigma, draws=draws, seed=seed)
         settings: dict[str, Any] = {
             "samples": samples,
@@ -191,8 +186,8 @@ def design(
             "drift_cost": drift_cost,
             "seed": seed,
         }
-        finished = _finished(out, design_settings(scenario, **settings))
-        _finish(
+        finished = finished_design(out, design_settings(scenario, **settings))
+        finish(
             lambda: (
                 finished
                 if finished is not None
@@ -230,7 +225,7 @@ def convergence(
     from .words import convergence_words
 
     with as_options():
-        _finish(
+        finish(
             lambda: run(
                 numbers=words_of(only) or None,
                 steps_s=steps_s,
@@ -243,65 +238,3 @@ def convergence(
             out,
             plot,
         )
-
-
-def _finish(run: Callable[[], xr.Dataset], words: Callable[[xr.Dataset], str], out: Path, plot: Path | None) -> None:
-    """Run a study, write its files together, and say what it came to."""
-    from ..atomic import write_files
-    from ..netcdf import netcdf_bytes
-    from .words import warnings
-
-    start = perf_counter()
-    result = run()
-    seconds = perf_counter() - start
-    files: dict[Path, bytes | memoryview] = {out: netcdf_bytes(result)}
-    if plot is not None:
-        from ..plots.image import figure_bytes
-
-        files[plot] = figure_bytes(result, plot.suffix.lower().removeprefix("."), draw=_figure_of(result))
-    write_files(files)
-    typer.echo(f"{words(result)}\ntime: {seconds:.2f} s")
-    for warning in warnings(result):
-        typer.echo(f"tumblers: warning: {warning}", err=True)
-
-
-def _figure_of(result: xr.Dataset) -> Callable[[xr.Dataset, Figure], Figure]:
-    from . import plots
-
-    name = str(result.attrs["title"]).removeprefix("tumblers ")
-    figure: Callable[[xr.Dataset, Figure], Figure] = getattr(plots, f"plot_{name}")
-    return figure
-
-
-def _finished(out: Path, settings: dict[str, Any]) -> xr.Dataset | None:
-    """Return the result that is there already, None if there is no file; one of other settings is refused."""
-    if not out.exists():
-        return None
-    import xarray as xr
-
-    from .resume import other_setting
-
-    try:
-        with xr.open_dataset(out, engine="h5netcdf") as file:
-            result = file.load()
-        kept = json.loads(result.attrs["settings"])
-    except (OSError, ValueError, KeyError):
-        kept = None
-    other = other_setting(kept, settings)
-    if other is not None:
-        raise InputError("parts", f"{other[0]} in {out}", f"{other[1]}, or another file")
-    return result
-
-
-@contextmanager
-def _resumable(parts: Path) -> Iterator[None]:
-    """Say on Ctrl-C that what was done is kept."""
-    try:
-        yield
-    except KeyboardInterrupt:
-        done = sum(1 for file in parts.glob("*.json")) - 1 if parts.exists() else 0
-        typer.echo(
-            f"tumblers: interrupted, {max(done, 0)} parts kept in {parts}: the same command goes on from there",
-            err=True,
-        )
-        raise SystemExit(130) from None

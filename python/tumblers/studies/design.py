@@ -23,7 +23,7 @@ from .climb import whole_number
 from .defaults import DRIFT_COST, GENERATIONS, SAMPLES
 from .front import pareto_front
 from .native import Native
-from .resume import Parts
+from .resume import Parts, numbers_of
 from .robust import NO_ERROR, Errors, merits, with_errors
 from .space import QUANTITIES, DesignSpace
 
@@ -152,7 +152,9 @@ def design(
         table: dict[str, list[float]] = {name: [] for name in QUANTITIES}
         for first in range(0, samples, _CHUNK):
             chunk = [space.family.values(place) for place in unit[first : first + _CHUNK]]
-            part = kept.part(f"samples-{first:05d}", partial(space.described, chunk, seen, native))
+            part = kept.part(
+                f"samples-{first:05d}", partial(space.described, chunk, seen, native), partial(_table, len(chunk))
+            )
             for name, values in part.items():
                 table[name] += values
             native.done = (first + len(chunk)) * per_design
@@ -162,7 +164,11 @@ def design(
         robust = _search("robust", start, space, seen, generations, seed, native, kept)
         best = {"nominal": nominal, "robust": robust}
         chosen = {"base": space.family.start} | {goal: space.family.values(place) for goal, place in best.items()}
-        final = kept.part("candidates", lambda: space.described([chosen[name] for name in CANDIDATES], fresh, native))
+        final = kept.part(
+            "candidates",
+            lambda: space.described([chosen[name] for name in CANDIDATES], fresh, native),
+            partial(_table, len(CANDIDATES)),
+        )
         drawn = native.outcomes(
             [case for name in CANDIDATES for case in with_errors(space.scenario(chosen[name]), fresh)]
         )
@@ -195,6 +201,11 @@ def design(
     return result
 
 
+def _table(count: int, value: object) -> bool:
+    """Return whether a value has every quantity of so many designs."""
+    return isinstance(value, dict) and {*value} == {*QUANTITIES} and all(numbers_of(count, v) for v in value.values())
+
+
 def _best(unit: Floats, table: dict[str, list[float]], goal: str) -> Floats:
     """Return the samples of the greatest merit, places in the unit cube, the best first."""
     order = np.argsort(-np.array(table[f"{goal}_merit_m_per_s"]), kind="stable")
@@ -221,22 +232,32 @@ def _search(
         nonlocal generation
         designs = np.atleast_2d(places.T)
         before = native.done
-        part = kept.part(f"{goal}-{generation:05d}", lambda: space.merit(designs, errors, native).tolist())
+        part = kept.part(
+            f"{goal}-{generation:05d}",
+            lambda: space.merit(designs, errors, native).tolist(),
+            partial(numbers_of, len(designs)),
+        )
         native.done = before + len(designs) * len(errors)
         generation += 1
         return -np.array(part)
 
-    found = differential_evolution(
-        costs,
-        [(0.0, 1.0)] * start.shape[1],
-        init=start,
-        maxiter=generations,
-        tol=0.0,
-        seed=seed,
-        polish=False,
-        updating="deferred",
-        vectorized=True,
-    )
+    try:
+        found = differential_evolution(
+            costs,
+            [(0.0, 1.0)] * start.shape[1],
+            init=start,
+            maxiter=generations,
+            tol=0.0,
+            seed=seed,
+            polish=False,
+            updating="deferred",
+            vectorized=True,
+        )
+    except RuntimeError as error:
+        # SciPy hides a ValueError, and so what is wrong with a part.
+        if isinstance(error.__cause__, InputError):
+            raise error.__cause__ from None
+        raise
     best: Floats = found.x
     return best
 

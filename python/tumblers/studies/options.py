@@ -20,7 +20,6 @@ _OPTIONS = {
     "slopes_deg": "--slopes",
     "resolution_deg": "--resolution",
     "settling_cycles": "--settling",
-    "drift_limit_m": "--drift-limit-um",
     "drafts_deg": "--drafts",
     "theta1_deg": "--theta1",
     "theta2_deg": "--theta2",
@@ -48,7 +47,7 @@ def prepared(
     """Return the scenario that is meant, after all that names files has been checked."""
     named = robot in EXPERIMENTS or robot in ROBOTS
     file = None if named else Path(robot)
-    if file is not None and file.suffix != ".toml" and not file.exists():
+    if file is not None and file.suffix != ".toml" and (not file.exists() or file.is_dir()):
         raise InputError("--robot", repr(robot), f"{', '.join([*EXPERIMENTS, *ROBOTS])} or a scenario file .toml")
     outputs(out, plot, file, jobs)
     if substrate is not None:

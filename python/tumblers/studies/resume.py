@@ -10,7 +10,7 @@ from typing import Any
 from ..atomic import write_files
 from ..errors import InputError, unreadable
 
-__all__ = ["Parts", "other_setting"]
+__all__ = ["Parts", "numbers_of", "other_setting"]
 
 _SETTINGS = "settings.json"
 
@@ -39,10 +39,7 @@ class Parts:
             return
         file = folder / _SETTINGS
         if folder.exists():
-            try:
-                kept = json.loads(file.read_text(encoding="utf-8"))
-            except (OSError, ValueError) as error:
-                raise InputError("parts", f"{unreadable(error)} at {file}", "a folder of this study, or none") from None
+            kept = _held(file, lambda held: isinstance(held, Mapping), "a folder of this study, or none")
             other = other_setting(kept, settings)
             if other is not None:
                 found, expected = other
@@ -51,7 +48,7 @@ class Parts:
         folder.mkdir()
         write_files({file: json.dumps(settings, indent=1).encode()})
 
-    def part(self, name: str, compute: Callable[[], Any]) -> Any:
+    def part(self, name: str, compute: Callable[[], Any], fits: Callable[[Any], bool]) -> Any:
         """Return a part: from its file, or computed and then kept.
 
         Parameters
@@ -60,15 +57,49 @@ class Parts:
             Its name.
         compute
             Returns it, in what JSON can hold.
+        fits
+            Whether what a file holds can be this part.
+
+        Raises
+        ------
+        InputError
+            A file that holds something else.
         """
         if self.folder is None:
             return compute()
         file = self.folder / f"{name}.json"
         if file.exists():
-            return json.loads(file.read_text(encoding="utf-8"))
+            return _held(file, fits, "a part of this study, or no such file: it is computed again")
         result = compute()
         write_files({file: json.dumps(result).encode()})
         return result
+
+
+def numbers_of(count: int, value: object) -> bool:
+    """Return whether a value is a list of so many numbers.
+
+    Parameters
+    ----------
+    count, value
+        How many, and what JSON held.
+    """
+    return (
+        isinstance(value, list)
+        and len(value) == count
+        and all(isinstance(entry, int | float) and not isinstance(entry, bool) for entry in value)
+    )
+
+
+def _held(file: Path, fits: Callable[[Any], bool], expected: str) -> Any:
+    try:
+        held = json.loads(file.read_text(encoding="utf-8"))
+    except json.JSONDecodeError:
+        raise InputError("parts", f"text that is no JSON in {file}", expected) from None
+    except (OSError, ValueError) as error:
+        raise InputError("parts", f"{unreadable(error)} at {file}", expected) from None
+    if not fits(held):
+        raise InputError("parts", f"something else in {file}", expected)
+    return held
 
 
 def other_setting(kept: object, settings: Mapping[str, Any]) -> tuple[str, str] | None:

@@ -85,7 +85,7 @@ class DesignSpace:
         tipping_field_T
             What each needs, T.
         """
-        return np.asarray(tipping_field_T <= rotating(self.base).strength_T)
+        return np.asarray(tipping_field_T <= rotating(self.base.effective()).strength_T)
 
     def runs(self, draws: int) -> int:
         """Return how many runs it takes at most to describe one design.

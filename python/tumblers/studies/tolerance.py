@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from itertools import pairwise
+from math import nan
 from typing import Any
 
 import numpy as np
@@ -26,6 +27,7 @@ PAPER_DRAFT_DEG, PAPER_THETA2_DEG = 2.0, 10.0
 
 # How close the tolerances of one error alone are sought.
 _RESOLUTION_DEG = 0.01
+_ROUNDING_DEG = 1e-9
 Bools = NDArray[np.bool_]
 
 
@@ -74,9 +76,10 @@ def tolerance(
         even no draft is kept.
         Attributes: ``draft_tolerance_deg`` (no magnetization error), ``theta2_tolerance_deg`` (last θ1, no draft), NaN
         if none is kept and, with ``draft_tolerance_open`` or ``theta2_tolerance_open`` at 1, the grid's greatest if all
-        are; ``joint_theta2_deg``, greatest bound on θ2 with which the paper's 2° of draft are kept at the last θ1;
-        ``paper_box_kept``, share of the cases with φ ≤ 2° and |θ2| ≤ 10° at the last θ1 that are kept, and
-        ``paper_box_drift_m``, the greatest drift among them.
+        are; ``joint_theta2_deg``, greatest bound on θ2 with which all drafts of the grid up to the paper's 2°,
+        ``joint_theta2_draft_deg`` the greatest of them, are kept at the last θ1; ``paper_box_kept``, share of the
+        cases with φ ≤ 2° and |θ2| ≤ 10° at the last θ1 that are kept, and ``paper_box_drift_m``, the greatest drift
+        among them, NaN where the grid has not the corners of that box.
 
     Raises
     ------
@@ -140,8 +143,10 @@ def tolerance(
 
     draft, draft_open = _alone(drafts, kept[:, 0, 0], keeps_draft)
     bound, bound_open = _alone(bounds, np.array([kept[0, -1, inside].all() for inside in within]), keeps_theta2)
-    box = np.ix_(np.array(drafts) <= PAPER_DRAFT_DEG, np.abs(np.array(theta2)) <= PAPER_THETA2_DEG)
-    up_to_paper = np.less_equal(drafts, PAPER_DRAFT_DEG)
+    # A range of steps ends a rounding beside 2.
+    up_to_paper = np.less_equal(drafts, PAPER_DRAFT_DEG + _ROUNDING_DEG)
+    box = np.ix_(up_to_paper, np.abs(np.array(theta2)) <= PAPER_THETA2_DEG + _ROUNDING_DEG)
+    corners = _has(drafts, PAPER_DRAFT_DEG) and _has(theta2, -PAPER_THETA2_DEG) and _has(theta2, PAPER_THETA2_DEG)
     attrs = {
         "title": "tumblers tolerance",
         "tumblers_version": __version__,
@@ -152,8 +157,9 @@ def tolerance(
         "theta2_tolerance_deg": bound,
         "theta2_tolerance_open": int(bound_open),
         "joint_theta2_deg": _greatest(bounds, np.array([kept[up_to_paper, -1][:, w].all() for w in within])),
-        "paper_box_kept": float(kept[:, -1][box].mean()),
-        "paper_box_drift_m": float(np.abs(variables["drift_m"][1][:, -1][box]).max()),
+        "joint_theta2_draft_deg": float(np.array(drafts)[up_to_paper][-1]),
+        "paper_box_kept": float(kept[:, -1][box].mean()) if corners else nan,
+        "paper_box_drift_m": float(np.abs(variables["drift_m"][1][:, -1][box]).max()) if corners else nan,
     }
     return xr.Dataset(variables, coordinates, attrs=attrs)
 
@@ -167,6 +173,10 @@ def _increasing(key: str, value: object, first: float | None = None, among: floa
     if among is not None and among not in values:
         raise InputError(key, show(list(values)), f"{among:g} among them")
     return values
+
+
+def _has(values: Sequence[float], wanted: float) -> bool:
+    return bool((np.abs(np.array(values) - wanted) <= _ROUNDING_DEG).any())
 
 
 def _kept(cases: xr.Dataset, drift_limit_m: float) -> Bools:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import isnan
 
 import numpy as np
@@ -60,12 +61,17 @@ def tolerance_words(tolerance: xr.Dataset) -> str:
             f"  magnetization error alone, θ1 = {theta1:g}°: "
             f"{_up_to('|θ2|', attrs['theta2_tolerance_deg'], attrs['theta2_tolerance_open'])}",
             f"  both, θ1 = {theta1:g}°: with |θ2| ≤ {bounds[inside]:g}° {_up_to('φ', joint, False)}; "
-            f"with φ ≤ {PAPER_DRAFT_DEG:g}° {_up_to('|θ2|', attrs['joint_theta2_deg'], False)}",
-            f"  the paper's φ ≤ {PAPER_DRAFT_DEG:g}°, |θ2| ≤ {PAPER_THETA2_DEG:g}°: "
-            f"{attrs['paper_box_kept']:.0%} of the cases kept, "
-            f"drift up to {attrs['paper_box_drift_m'] * _PER_METRE:.1f} µm",
+            f"with φ ≤ {attrs['joint_theta2_draft_deg']:g}° {_up_to('|θ2|', attrs['joint_theta2_deg'], False)}",
+            f"  the paper's φ ≤ {PAPER_DRAFT_DEG:g}°, |θ2| ≤ {PAPER_THETA2_DEG:g}°: {_paper_box(attrs)}",
         ]
     )
+
+
+def _paper_box(attrs: Mapping[str, float]) -> str:
+    if isnan(attrs["paper_box_kept"]):
+        return "not judged, the grid has not its corners"
+    drift = attrs["paper_box_drift_m"] * _PER_METRE
+    return f"{attrs['paper_box_kept']:.0%} of the cases kept, drift up to {drift:.1f} µm"
 
 
 def _up_to(name: str, value: float, open_end: bool) -> str:
@@ -154,6 +160,11 @@ def warnings(result: xr.Dataset) -> list[str]:
     if steps:
         runs = int((result["unconverged_steps"] > 0).sum())
         lines.append(f"{steps} steps did not converge, in {runs} of {result['unconverged_steps'].size} results")
+    if "error_speed_m_per_s" in result:
+        means = ("speed_m_per_s", "error_speed_m_per_s")
+        lost = np.any([~np.isfinite(result[name].values) for name in means], axis=0)
+        if lost.any():
+            lines.append(f"{int(lost.sum())} of {lost.size} designs have runs that failed, and no speed for it")
     gain = result.attrs.get("robust_gain_m_per_s")
     if gain is not None and gain <= result.attrs["robust_gain_error_m_per_s"]:
         lines.append("the robust design is no better than the nominal one on fresh robots: draw more (--draws)")

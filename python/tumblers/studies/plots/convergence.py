@@ -14,7 +14,8 @@ from ...plots.style import BLUE, GREEN, ORANGE, PER_METRE, figure_or_new
 
 __all__ = ["plot_convergence"]
 
-_COLUMNS = 3
+# Inches that the title takes are the least width.
+_COLUMNS, _NARROWEST = 3, 6.5
 _COLOURS = {"end_of_step": BLUE, "midpoint": GREEN, "start_of_step": ORANGE}
 _MARKERS = ("o", "s", "^", "v", "D", "x")
 _UNITS = {"m s-1": (PER_METRE, "µm/s"), "m": (PER_METRE, "µm"), "1": (1.0, "share"), "degree": (1.0, "°")}
@@ -38,16 +39,17 @@ def plot_convergence(convergence: xr.Dataset, figure: Figure | None = None) -> F
         The figure drawn on.
     """
     keys = convergence["number"].values
-    rows = ceil(len(keys) / _COLUMNS)
-    figure = figure_or_new(figure, (13.0, 1.2 + 2.9 * rows))
-    axes = figure.subplots(rows, _COLUMNS, squeeze=False).ravel()
+    columns = min(len(keys), _COLUMNS)
+    rows = ceil(len(keys) / columns)
+    figure = figure_or_new(figure, (max(4.3 * columns, _NARROWEST), 1.2 + 2.9 * rows))
+    axes = figure.subplots(rows, columns, squeeze=False).ravel()
     for ax, key in zip(axes, keys, strict=False):
         _panel(ax, convergence.sel(number=key))
     for ax in axes[len(keys) :]:
         ax.set_visible(False)
     handles, words = axes[0].get_legend_handles_labels()
     named = dict(zip(words, handles, strict=True))
-    figure.legend(named.values(), named.keys(), loc="outside lower center", ncols=5, frameon=False)
+    figure.legend(named.values(), named.keys(), loc="outside lower center", ncols=2 * columns - 1, frameon=False)
     figure.suptitle("What the numbers rest on: step, the torque's time in it, and e_r")
     return figure
 
