@@ -174,6 +174,11 @@ def test_shares_of_contact_leave_out_the_start_and_weigh_by_time() -> None:
     assert summary.startswith("speed 0.0 µm/s; drift 0.0 µm, twist 0.0° after one cycle")
 
 
+def test_a_range_goes_through_the_decimals_that_were_typed() -> None:
+    assert numbers("--theta2", "-0.3:0.3:0.1") == [-0.3, -0.2, -0.1, 0.0, 0.1, 0.2, 0.3]
+    assert numbers("--theta2", "1:2:0.1")[-1] == 2.0
+
+
 def test_the_papers_grid_stands_once() -> None:
     from tumblers.commands import _DRAFTS, _THETA1, _THETA2
 

@@ -21,6 +21,9 @@ from tumblers import (
     simulate,
     sweep,
 )
+from tumblers.effects.size_error import SizeError
+from tumblers.field import RotatingField
+from tumblers.shape import Cuboid
 
 DRAFTS = [0.0, 3.0]
 CASES = [(0.0, 0.0), (10.0, 40.0), (10.0, 90.0)]
@@ -141,3 +144,14 @@ def test_a_callback_can_stop_a_sweep(scenario: Scenario) -> None:
     long = replace(scenario, run=Run(duration_s=1000.0, step_s=5e-4))
     with pytest.raises(KeyboardInterrupt):
         sweep(long, drafts_deg=DRAFTS, magnetization=CASES, progress=stop)
+
+
+def test_the_speed_without_slip_is_that_of_the_robot_that_runs() -> None:
+    scenario = preset_scenario("cuboid_on_paper", duration_s=0.1)
+    longer = replace(scenario, effects=(SizeError(length_factor=1.5),))
+    shape = scenario.robot.shape
+    assert isinstance(shape, Cuboid)
+    assert isinstance(scenario.field, RotatingField)
+    assert ideal_speed(longer) == pytest.approx(
+        2.0 * (1.5 * shape.length_m + shape.height_m) * scenario.field.frequency_Hz
+    )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from decimal import Decimal
 from itertools import pairwise
 from math import floor
 from pathlib import Path
@@ -50,7 +51,9 @@ def numbers(option: str, text: str) -> list[float]:
         if step <= 0.0 or last < first or (last - first) / step > _MOST:
             raise InputError(option, repr(text), _EXPECTED)
         count = floor((last - first) / step * (1.0 + 1e-12) + 1e-9) + 1
-        found += [first + i * step for i in range(count)]
+        # In decimals, as they were typed: -0.3:0.3:0.1 goes through 0, and not a rounding beside it.
+        exact = [Decimal(repr(bound)) for bound in (first, step)]
+        found += [float(exact[0] + i * exact[1]) for i in range(count)]
     return found
 
 

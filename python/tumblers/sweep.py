@@ -164,15 +164,16 @@ def ideal_speed(scenario: Scenario) -> float | None:
     Parameters
     ----------
     scenario
-        The robot and the field.
+        The robot and the field, its effects at work.
     """
+    scenario = scenario.effective()
     if not isinstance(scenario.field, RotatingField):
         return None
     return scenario.robot.with_draft(0.0).body().hull_perimeter_m * scenario.field.frequency_Hz
 
 
 def _speeds(scenario: Scenario) -> dict[str, float]:
-    ideal = ideal_speed(scenario)
+    ideal, scenario = ideal_speed(scenario), scenario.effective()
     if ideal is None or not isfinite(ideal) or not isinstance(scenario.field, RotatingField):
         return {}
     speeds = {"ideal_speed_m_per_s": ideal}

@@ -146,7 +146,7 @@ def limits(
         for (robot, slope), way in zip(tries, ways, strict=True):
             scenario = scenarios[robot]
             frequency = rotating(scenario).frequency_Hz
-            perimeter = (ideal_speed(scenario.effective()) or np.nan) / frequency
+            perimeter = (ideal_speed(scenario) or np.nan) / frequency
             gained = np.diff(way.ends_m[settling_cycles:])
             ascents.append(
                 Ascent(

@@ -38,7 +38,7 @@ def plot_climb(climb: xr.Dataset, figure: Figure | None = None) -> Figure:
     """
     figure = titled_figure(figure, (9.0, 5.4), "Climbing", climb)
     ax = figure.subplots()
-    ideal = (ideal_speed(Scenario.from_toml(climb.attrs["scenario"]).effective()) or np.nan) * PER_METRE
+    ideal = (ideal_speed(Scenario.from_toml(climb.attrs["scenario"])) or np.nan) * PER_METRE
     slopes, climbs = climb["incline_deg"].values, climb["climbs"].values.astype(bool)
     speed = climb["speed_m_per_s"].values * PER_METRE
     lowest = _LOWEST * ideal
