@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from shutil import rmtree
 from time import perf_counter
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -27,6 +28,7 @@ from .options import (
     numbers,
     output_file,
 )
+from .parts import resumable
 from .presets import DRIVES, EXPERIMENTS, ROBOTS, SUBSTRATES, preset_scenario
 from .reproduce_command import reproduce
 from .scenario import Scenario
@@ -152,6 +154,8 @@ def sweep(
 ) -> None:
     """Run a scenario for a grid of drafts and magnetization errors; the paper's 16 × 37 cases by default.
 
+    What a long sweep has done is kept in OUT.parts until the whole is written: the same command goes on from there.
+
     \b
     Examples:
       tumblers sweep --robot spiked --out sweep.nc --plot sweep.png
@@ -176,7 +180,11 @@ def sweep(
     from .sweep import sweep as run_sweep
 
     start = perf_counter()
-    result = run_sweep(scenario, drafts_deg=drafts_deg, magnetization=cases, threads=jobs, progress=True)
+    parts = out.with_name(f"{out.name}.parts")
+    with resumable(parts):
+        result = run_sweep(
+            scenario, drafts_deg=drafts_deg, magnetization=cases, parts=parts, threads=jobs, progress=True
+        )
     seconds = perf_counter() - start
     errors = result["error"].values.ravel()
     if all(errors):
@@ -184,6 +192,8 @@ def sweep(
         refused = all(": found " in error for error in errors)
         raise (TumblersError if refused else SimulationError)(f"no case could be run, the first: {errors[0]}")
     _write(result, out, plot)
+    if parts.exists():
+        rmtree(parts)
     typer.echo(sweep_summary(result, seconds))
     _warn(sweep_warnings(result, scenario.run.steps))
 

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from math import isfinite
+from os import PathLike
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,9 +15,11 @@ import xarray as xr
 
 from . import _core
 from .check import sequence, thread_count
+from .effects.catalogue import sources_of
 from .errors import InputError, TumblersError, show
 from .field import RotatingField
 from .grid import PAPER_DRAFTS_DEG, PAPER_MAGNETIZATION_DEG
+from .parts import Parts
 from .progress import OnProgress, native_call
 from .scenario import Scenario
 from .shape import Cuboid, Spiked, SpikedEnds
@@ -27,9 +32,12 @@ __all__ = [
     "ideal_speed",
     "preferred_cases",
     "sweep",
+    "sweep_settings",
 ]
 
 DRIFT_LIMIT_M = 50e-6
+# Steps of a part at least, where there is more than one: some drafts, about half a minute of one core.
+_PART_STEPS = 20_000_000
 
 # name: (units, meaning)
 _VARIABLES = {
@@ -50,10 +58,13 @@ def sweep(
     *,
     drafts_deg: Sequence[float] = PAPER_DRAFTS_DEG,
     magnetization: Sequence[tuple[float, float]] = PAPER_MAGNETIZATION_DEG,
+    parts: str | PathLike[str] | None = None,
     threads: int | None = None,
     progress: bool | OnProgress = False,
 ) -> xr.Dataset:
-    """Run a scenario for every draft and every magnetization error: one native call.
+    """Run a scenario for every draft and every magnetization error: one native call, or a few where there are many.
+
+    A long sweep is run in parts of some drafts each, which take about half a minute of one core.
 
     Parameters
     ----------
@@ -63,6 +74,8 @@ def sweep(
         Drafts φ, degrees; the paper's 0° to 15° by default.
     magnetization
         Pairs θ1, θ2, degrees; the paper's 37 by default: θ1 = 0, and θ1 = 10° with θ2 = 10° to 360°.
+    parts
+        Folder for the parts of a long sweep, from which a later call with the same settings goes on; none by default.
     threads
         Number of threads, all by default. The result does not depend on it.
     progress
@@ -80,9 +93,11 @@ def sweep(
     Raises
     ------
     InputError
-        A scenario, a grid or a number of threads that is refused.
+        A scenario, a grid or a number of threads that is refused, or parts of other settings (key ``parts``).
     SimulationError
         The native module gave up.
+    OSError
+        The folder of the parts cannot be written to, or the disk is full.
     """
     drafts = sequence("drafts_deg", drafts_deg, "a list of numbers", _angle)
     cases = sequence("magnetization", magnetization, "a list of pairs of numbers", _pair)
@@ -90,6 +105,66 @@ def sweep(
         raise InputError("magnetization" if drafts else "drafts_deg", "an empty list", "at least one case")
     if threads is not None:
         thread_count("threads", threads)
+    rows = max(1, round(_PART_STEPS / (len(cases) * scenario.run.steps)))
+    firsts = range(0, len(drafts), rows)
+    folder = None if parts is None or len(firsts) == 1 else Path(parts)
+    kept = Parts(folder, sweep_settings(scenario, drafts, cases))
+    found = []
+    with native_call("cases", len(drafts) * len(cases), progress) as on_progress:
+        for first in firsts:
+            chunk = drafts[first : first + rows]
+
+            def report(done: int, before: int = first * len(cases)) -> None:
+                if on_progress is not None:
+                    on_progress(before + done)
+
+            found.append(
+                kept.dataset(
+                    f"drafts-{first:05d}",
+                    partial(_rows, scenario, chunk, cases, threads or 0, None if on_progress is None else report),
+                    partial(_fits, chunk, cases),
+                )
+            )
+            report(len(chunk) * len(cases))
+    result = found[0] if len(found) == 1 else xr.concat(found, "draft_deg", data_vars="all", coords="minimal")
+    attrs = {"title": "tumblers sweep", "tumblers_version": __version__, "scenario": scenario.to_toml()}
+    return result.assign_attrs(attrs | _speeds(scenario))
+
+
+def sweep_settings(
+    scenario: Scenario, drafts_deg: Sequence[float], magnetization: Sequence[tuple[float, float]]
+) -> dict[str, Any]:
+    """Return what the parts of a sweep depend on.
+
+    Parameters
+    ----------
+    scenario, drafts_deg, magnetization
+        As for `sweep`.
+    """
+    return {
+        "tumblers_version": __version__,
+        "drafts_deg": list(drafts_deg),
+        "magnetization": [list(pair) for pair in magnetization],
+        "scenario": scenario.to_toml(),
+        "effect_files": sources_of(scenario.effects),
+    }
+
+
+def _fits(drafts: Sequence[float], cases: Sequence[tuple[float, float]], held: xr.Dataset) -> bool:
+    if {*held.data_vars} != {*_VARIABLES} or {*held.coords} != {"draft_deg", "theta1_deg", "theta2_deg"}:
+        return False
+    pairs = np.column_stack([held["theta1_deg"].values, held["theta2_deg"].values])
+    return np.array_equal(held["draft_deg"].values, drafts) and np.array_equal(pairs, np.array(cases))
+
+
+def _rows(
+    scenario: Scenario,
+    drafts: Sequence[float],
+    cases: Sequence[tuple[float, float]],
+    threads: int,
+    on_progress: OnProgress | None,
+) -> xr.Dataset:
+    """Run every magnetization error for some drafts: one native call."""
     trials: list[_core.Trial] = []
     errors = []
     for draft in drafts:
@@ -101,8 +176,7 @@ def sweep(
             except TumblersError as reason:
                 errors.append(str(reason))
     built = np.array([not error for error in errors], dtype=bool)
-    with native_call("cases", len(trials), progress) as on_progress:
-        results: Mapping[str, Any] = _core.sweep(trials, threads or 0, on_progress)
+    results: Mapping[str, Any] = _core.sweep(trials, threads, on_progress)
     for case, error in zip(np.flatnonzero(built), results["error"], strict=True):
         errors[case] = " ".join((error or "").split())
     failed = np.array([bool(error) for error in errors], dtype=bool)
@@ -130,14 +204,13 @@ def sweep(
         name: (dims, columns[name].reshape(len(drafts), len(cases)), _attributes(units, meaning))
         for name, (units, meaning) in _VARIABLES.items()
     }
-    theta1, theta2 = np.array(cases, dtype=np.float64).T
+    axes = np.array(cases, dtype=np.float64).T
     coordinates = {
         "draft_deg": ("draft_deg", np.array(drafts), _attributes("degree", "draft angle")),
-        "theta1_deg": ("magnetization_case", theta1, _attributes("degree", "θ1, off the long axis")),
-        "theta2_deg": ("magnetization_case", theta2, _attributes("degree", "θ2, about the long axis")),
+        "theta1_deg": ("magnetization_case", axes[0], _attributes("degree", "θ1, off the long axis")),
+        "theta2_deg": ("magnetization_case", axes[1], _attributes("degree", "θ2, about the long axis")),
     }
-    attrs = {"title": "tumblers sweep", "tumblers_version": __version__, "scenario": scenario.to_toml()}
-    return xr.Dataset(variables, coordinates, attrs=attrs | _speeds(scenario))
+    return xr.Dataset(variables, coordinates)
 
 
 def _attributes(units: str, meaning: str) -> dict[str, str]:

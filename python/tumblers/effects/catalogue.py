@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterable
 from difflib import get_close_matches
 from hashlib import sha256
 from importlib.util import module_from_spec, spec_from_file_location
@@ -33,7 +34,7 @@ from .substrate_tilt import SubstrateTilt
 from .surface_roughness import SurfaceRoughness
 from .viscous_drag import ViscousDrag
 
-__all__ = ["CATALOGUE", "effects_from_tables", "file_of", "get", "load_file", "register"]
+__all__ = ["CATALOGUE", "effects_from_tables", "file_of", "get", "load_file", "register", "sources_of"]
 
 CATALOGUE: dict[str, type[Effect]] = {
     effect.name: effect
@@ -157,6 +158,18 @@ def file_of(effect: type[Effect]) -> Path | None:
         The class.
     """
     return next((path for path, effects in _LOADED.items() if effect in effects), None)
+
+
+def sources_of(effects: Iterable[Effect]) -> dict[str, str]:
+    """Return the SHA-256 of the file of every effect that `load_file` has, by name: a result depends on it.
+
+    Parameters
+    ----------
+    effects
+        Of a scenario.
+    """
+    files = {effect.name: file_of(type(effect)) for effect in effects}
+    return {name: sha256(file.read_bytes()).hexdigest() for name, file in files.items() if file is not None}
 
 
 def _effects_of(path: Path, name: str) -> tuple[type[Effect], ...]:

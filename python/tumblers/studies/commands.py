@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from shutil import rmtree
 from typing import Annotated, Any, get_args
 
 import typer
 
 from ..check import choice, number
 from ..options import as_option, numbers
+from ..parts import resumable
 from ..robot import DraftModel
 from .defaults import (
     AXIS_SIGMA_DEG,
@@ -29,7 +31,7 @@ from .defaults import (
     THETA2_DEG,
     TORQUES,
 )
-from .finish import finish, finished_design, resumable
+from .finish import finish, finished_design
 from .options import as_options, outputs, prepared, words_of
 
 __all__ = ["climb", "convergence", "design", "tolerance"]
@@ -198,9 +200,7 @@ def design(
             plot,
         )
     if parts.exists():
-        import shutil
-
-        shutil.rmtree(parts)
+        rmtree(parts)
 
 
 def convergence(

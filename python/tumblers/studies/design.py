@@ -15,7 +15,9 @@ from numpy.typing import NDArray
 from scipy.optimize import differential_evolution
 from scipy.stats import qmc
 
+from ..effects.catalogue import sources_of
 from ..errors import InputError, show
+from ..parts import Parts, numbers_of
 from ..progress import OnProgress, native_call
 from ..scenario import Scenario
 from ..version import __version__
@@ -23,7 +25,6 @@ from .climb import whole_number
 from .defaults import DRIFT_COST, GENERATIONS, SAMPLES
 from .front import pareto_front
 from .native import Native
-from .resume import Parts, numbers_of
 from .robust import NO_ERROR, Errors, merits, with_errors
 from .space import QUANTITIES, DesignSpace
 
@@ -63,6 +64,7 @@ def design_settings(
         "drift_cost": float(drift_cost),
         "seed": seed,
         "scenario": scenario.to_toml(),
+        "effect_files": sources_of(scenario.effects),
     }
 
 

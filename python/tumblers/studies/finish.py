@@ -1,10 +1,9 @@
-"""How the command of a study ends: its files, its words, and what an interrupted one leaves."""
+"""How the command of a study ends: its files and its words."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
@@ -17,7 +16,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-__all__ = ["finish", "finished_design", "resumable"]
+__all__ = ["finish", "finished_design"]
 
 
 def finish(run: Callable[[], xr.Dataset], words: Callable[[xr.Dataset], str], out: Path, plot: Path | None) -> None:
@@ -75,7 +74,7 @@ def finished_design(out: Path, settings: dict[str, Any]) -> xr.Dataset | None:
         return None
     import xarray as xr
 
-    from .resume import other_setting
+    from ..parts import other_setting
 
     try:
         with xr.open_dataset(out, engine="h5netcdf") as file:
@@ -87,23 +86,3 @@ def finished_design(out: Path, settings: dict[str, Any]) -> xr.Dataset | None:
     if other is not None:
         raise InputError("parts", f"{other[0]} in {out}", f"{other[1]}, or another file")
     return result
-
-
-@contextmanager
-def resumable(parts: Path) -> Iterator[None]:
-    """Say on Ctrl-C that what was done is kept.
-
-    Parameters
-    ----------
-    parts
-        The folder that it is kept in.
-    """
-    try:
-        yield
-    except KeyboardInterrupt:
-        done = sum(1 for file in parts.glob("*.json")) - 1 if parts.exists() else 0
-        typer.echo(
-            f"tumblers: interrupted, {max(done, 0)} parts kept in {parts}: the same command goes on from there",
-            err=True,
-        )
-        raise SystemExit(130) from None

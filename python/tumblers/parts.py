@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from ..atomic import write_files
-from ..errors import InputError, unreadable
+from .atomic import write_files
+from .errors import InputError, unreadable
 
-__all__ = ["Parts", "numbers_of", "other_setting"]
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["Parts", "numbers_of", "other_setting", "resumable"]
 
 _SETTINGS = "settings.json"
+_EXPECTED = "a part of these results, or no such file: it is computed again"
 
 
 class Parts:
@@ -38,14 +44,17 @@ class Parts:
         if folder is None:
             return
         file = folder / _SETTINGS
-        if folder.exists():
-            kept = _held(file, lambda held: isinstance(held, Mapping), "a folder of this study, or none")
+        # What a killed write left behind is no part; and one that was killed before its first file has no settings.
+        for left in folder.glob(".*.tmp") if folder.exists() else ():
+            left.unlink()
+        if folder.exists() and any(folder.iterdir()):
+            kept = _held(file, lambda held: isinstance(held, Mapping), "a folder of these results, or none")
             other = other_setting(kept, settings)
             if other is not None:
                 found, expected = other
                 raise InputError("parts", f"{found} in {folder}", f"{expected}, or another file")
             return
-        folder.mkdir()
+        folder.mkdir(exist_ok=True)
         write_files({file: json.dumps(settings, indent=1).encode()})
 
     def part(self, name: str, compute: Callable[[], Any], fits: Callable[[Any], bool]) -> Any:
@@ -69,10 +78,62 @@ class Parts:
             return compute()
         file = self.folder / f"{name}.json"
         if file.exists():
-            return _held(file, fits, "a part of this study, or no such file: it is computed again")
+            return _held(file, fits, _EXPECTED)
         result = compute()
         write_files({file: json.dumps(result).encode()})
         return result
+
+    def dataset(self, name: str, compute: Callable[[], xr.Dataset], fits: Callable[[xr.Dataset], bool]) -> xr.Dataset:
+        """Return a part that is a Dataset: from its netCDF file, or computed and then kept.
+
+        Parameters
+        ----------
+        name, compute, fits
+            As for `part`.
+
+        Raises
+        ------
+        InputError
+            A file that holds something else.
+        """
+        if self.folder is None:
+            return compute()
+        import xarray as xr
+
+        from .netcdf import save_netcdf
+
+        file = self.folder / f"{name}.nc"
+        if file.exists():
+            try:
+                with xr.open_dataset(file, engine="h5netcdf") as opened:
+                    held = opened.load()
+            except (OSError, ValueError, KeyError):
+                raise InputError("parts", f"no netCDF in {file}", _EXPECTED) from None
+            if not fits(held):
+                raise InputError("parts", f"something else in {file}", _EXPECTED)
+            return held
+        result = compute()
+        save_netcdf(result, file)
+        return result
+
+
+@contextmanager
+def resumable(folder: Path) -> Iterator[None]:
+    """Say on Ctrl-C that what was done is kept.
+
+    Parameters
+    ----------
+    folder
+        The folder of `Parts`.
+    """
+    try:
+        yield
+    except KeyboardInterrupt:
+        if not folder.exists():
+            raise
+        done = sum(file.name != _SETTINGS and not file.name.startswith(".") for file in folder.iterdir())
+        sys.stderr.write(f"tumblers: interrupted, {done} parts kept in {folder}: the same command goes on from there\n")
+        raise SystemExit(130) from None
 
 
 def numbers_of(count: int, value: object) -> bool:
@@ -111,7 +172,7 @@ def other_setting(kept: object, settings: Mapping[str, Any]) -> tuple[str, str] 
         Settings of the results that are there, and those wanted.
     """
     if not isinstance(kept, Mapping):
-        return "no settings", "those of this study"
+        return "no settings", "those of these results"
     for key in dict.fromkeys([*settings, *kept]):
         if kept.get(key) != settings.get(key):
             words = [_short(key, table.get(key)) for table in (kept, settings)]

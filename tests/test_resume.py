@@ -1,0 +1,174 @@
+"""Long sweeps: killed at any moment they go on where they stopped, with nothing lost but the part in flight."""
+
+from __future__ import annotations
+
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+import xarray as xr
+
+from tumblers import InputError, preset_scenario, sweep
+from tumblers.effects import CATALOGUE, load_file
+from tumblers.parts import Parts
+
+# The package's attribute of this name is the function.
+module = import_module("tumblers.sweep")
+
+# The paper's robot for a tenth of a second: 200 steps of 3 cases in a part make one draft a part.
+DRAFTS = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
+CASES = [(0.0, 0.0), (10.0, 40.0), (10.0, 90.0)]
+ONE_DRAFT = 3 * 200
+# Eight drafts of 18 cases, 2000 steps each: a few tenths of a second, with a part after each draft.
+ARGUMENTS = ["sweep", "--robot", "spiked", "--drafts", "0:7", "--theta1", "0,10", "--theta2", "10:340:20"]
+COMMAND = (
+    "import importlib; importlib.import_module('tumblers.sweep')._PART_STEPS = 1; from tumblers.cli import main; main()"
+)
+
+
+@pytest.fixture
+def small_parts(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "_PART_STEPS", ONE_DRAFT)
+
+
+def run(folder: Path, **options: object) -> xr.Dataset:
+    scenario = preset_scenario("spiked", duration_s=0.1)
+    return sweep(scenario, **{"drafts_deg": DRAFTS, "magnetization": CASES, "parts": folder} | options)  # type: ignore[arg-type]
+
+
+def test_parts_make_the_sweep_that_one_call_makes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = run(tmp_path / "none")
+    assert not (tmp_path / "none").exists()
+    monkeypatch.setattr(module, "_PART_STEPS", ONE_DRAFT)
+    counted: list[int] = []
+    parts = run(tmp_path / "parts", progress=counted.append)
+    assert len(list((tmp_path / "parts").glob("*.nc"))) == len(DRAFTS)
+    xr.testing.assert_identical(parts, whole)
+    # From their files they are the same, bit for bit, and so is their order of progress.
+    xr.testing.assert_identical(run(tmp_path / "parts"), whole)
+    assert counted == sorted(counted)
+    assert counted[-1] == len(DRAFTS) * len(CASES)
+
+
+@pytest.mark.usefixtures("small_parts")
+def test_only_the_parts_that_are_missing_are_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = tmp_path / "parts"
+    whole = run(folder)
+    (folder / "drafts-00002.nc").unlink()
+    ran: list[float] = []
+    rows = module._rows
+    monkeypatch.setattr(module, "_rows", lambda *given: ran.extend(given[1]) or rows(*given))
+    xr.testing.assert_identical(run(folder), whole)
+    assert ran == [2.0]
+
+
+@pytest.mark.usefixtures("small_parts")
+@pytest.mark.parametrize(
+    ("options", "word"),
+    [({"drafts_deg": [*DRAFTS, 6.0]}, "drafts_deg"), ({"magnetization": CASES[:2]}, "magnetization")],
+)
+def test_parts_of_another_sweep_are_refused(tmp_path: Path, options: dict[str, object], word: str) -> None:
+    run(tmp_path / "parts")
+    before = {file: file.read_bytes() for file in (tmp_path / "parts").iterdir()}
+    with pytest.raises(InputError, match=f"parts: found another {word}|parts: found {word}"):
+        run(tmp_path / "parts", **options)
+    assert {file: file.read_bytes() for file in (tmp_path / "parts").iterdir()} == before
+
+
+@pytest.mark.usefixtures("small_parts")
+@pytest.mark.parametrize("spoil", ["text", "another"])
+def test_a_part_that_is_none_is_refused_by_its_name(tmp_path: Path, spoil: str) -> None:
+    folder = tmp_path / "parts"
+    run(folder)
+    if spoil == "text":
+        (folder / "drafts-00003.nc").write_text("no")
+    else:
+        shutil.copy(folder / "drafts-00001.nc", folder / "drafts-00003.nc")
+    with pytest.raises(InputError, match=r"drafts-00003\.nc"):
+        run(folder)
+
+
+def test_a_folder_that_was_made_and_no_more_is_taken(tmp_path: Path) -> None:
+    folder = tmp_path / "parts"
+    folder.mkdir()
+    (folder / ".settings.json.0.tmp").write_text("half")
+    Parts(folder, {"a": 1})
+    assert [file.name for file in folder.iterdir()] == ["settings.json"]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals")
+def test_a_sweep_that_is_killed_at_random_times_loses_no_part(tmp_path: Path) -> None:
+    whole, killed = tmp_path / "whole.nc", tmp_path / "killed.nc"
+
+    def start(out: Path) -> subprocess.Popen[bytes]:
+        return subprocess.Popen(
+            [sys.executable, "-c", COMMAND, *ARGUMENTS, "--jobs", "1", "--out", str(out)],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+
+    assert start(whole).wait() == 0
+    draw = random.Random(2026)
+    parts = tmp_path / "killed.nc.parts"
+    seen: dict[str, bytes] = {}
+    kills = 0
+    while not killed.exists():
+        process = start(killed)
+        # One in four dies while it starts, the others soon after a part more.
+        if draw.random() > 0.25:
+            while process.poll() is None and len(list(parts.glob("*.nc"))) <= len(seen):
+                time.sleep(0.001)
+        time.sleep(draw.uniform(0.0, 0.05))
+        if process.poll() is None:
+            process.send_signal(signal.SIGKILL)
+            kills += 1
+        process.wait()
+        if parts.exists():
+            now = {file.name: file.read_bytes() for file in parts.glob("*.nc")}
+            # What was there is there, as it was.
+            assert seen.items() <= now.items()
+            seen = now
+        assert kills < 60
+    assert kills > 1
+    # A kill between the whole and the parts' end leaves both: the next call only clears up.
+    if parts.exists():
+        assert start(killed).wait() == 0
+    assert not parts.exists()
+    with xr.open_dataset(killed, engine="h5netcdf") as one, xr.open_dataset(whole, engine="h5netcdf") as other:
+        xr.testing.assert_identical(one.load(), other.load())
+
+
+def test_parts_depend_on_the_files_of_the_effects(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = tmp_path / "weak_supply.py"
+    file.write_text(
+        "from dataclasses import dataclass\n"
+        "from typing import ClassVar\n"
+        "from tumblers.effects import Effect, Parameter\n\n\n"
+        "@dataclass(frozen=True, kw_only=True, slots=True)\n"
+        "class WeakSupply(Effect):\n"
+        '    """The coils get less current than they are told."""\n\n'
+        '    name: ClassVar[str] = "weak_supply"\n'
+        '    source: ClassVar[str] = "Ohm"\n'
+        "    parameters: ClassVar[tuple[Parameter, ...]] = (\n"
+        '        Parameter(key="factor", neutral=1.0, low=0.3, high=1.5, unit="1", meaning="field over nominal"),\n'
+        "    )\n"
+        "    factor: float = 1.0\n\n"
+        "    def act(self, scenario):\n"
+        '        """Return the scenario as it is."""\n'
+        "        return scenario\n"
+    )
+    (kind,) = load_file(file)
+    monkeypatch.delitem(CATALOGUE, kind.name)
+    scenario = replace(preset_scenario("spiked", duration_s=0.1), effects=(kind(),))
+    before = module.sweep_settings(scenario, DRAFTS, CASES)
+    file.write_text(file.read_text() + "# Another one.\n")
+    after = module.sweep_settings(scenario, DRAFTS, CASES)
+    assert {key for key in before if before[key] != after[key]} == {"effect_files"}
