@@ -9,7 +9,7 @@ SOURCES := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Carg
 # One interpreter for every cargo call, or pyo3 would be built again for each other one that it finds.
 export PYO3_PYTHON := $(abspath $(BIN)/python)
 
-.PHONY: sweep test lint rust-test python-test dozen bench clean
+.PHONY: sweep test lint rust-test python-test dozen bench peers clean
 
 sweep: $(VENV)/installed
 	$(BIN)/tumblers sweep --robot spiked --out sweep-spiked.nc --plot sweep-spiked.png
@@ -20,8 +20,8 @@ test: lint rust-test python-test
 lint: $(VENV)/installed $(VENV)/developing
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets --locked -- -D warnings
-	$(BIN)/ruff check python tests
-	$(BIN)/ruff format --check python tests
+	$(BIN)/ruff check python tests benches
+	$(BIN)/ruff format --check python tests benches
 	$(BIN)/mypy python/tumblers
 	$(BIN)/python -m mypy.stubtest tumblers._core
 
@@ -37,6 +37,12 @@ dozen: $(VENV)/installed $(VENV)/developing
 
 bench:
 	cargo bench -p tumblers-benches --locked
+
+# Beside other simulators, which are installed for this alone.
+peers: $(VENV)/installed
+	$(BIN)/pip install --quiet --disable-pip-version-check 'mujoco>=4.0' 'drake>=1.51'
+	$(BIN)/python benches/against_mujoco.py --page docs/performance.md
+	$(BIN)/python benches/against_drake.py --page docs/performance.md
 
 $(BIN)/maturin:
 	@command -v $(PYTHON) >/dev/null || { \
