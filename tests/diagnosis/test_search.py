@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from tumblers.diagnosis.beginnings import from_beginnings
 from tumblers.diagnosis.comparison import FAR, Comparison
 from tumblers.diagnosis.contender import of_fit, of_nominal
 from tumblers.diagnosis.fit import Fitter
@@ -135,7 +136,7 @@ def test_the_wavelength_of_a_roughness_is_found_from_the_beginnings() -> None:
     search = Search(fitter, [SurfaceRoughness], quiet, 0)
     (hypothesis,) = search.possible
     astray = of_fit(fitter, fitter.fit(hypothesis, hypothesis.starts[-1], evaluations=2))
-    found = search._from_beginnings(astray)
+    found = from_beginnings(fitter, astray, search.possible, 0)
     assert found.total < astray.total - 200.0
     (effect,) = found.effects
     assert isinstance(effect, SurfaceRoughness)

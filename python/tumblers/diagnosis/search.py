@@ -9,36 +9,32 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import combinations, pairwise
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import qmc
 
 from ..effects.base import Effect
 from ..progress import OnPhase
+from .beginnings import MANY, from_beginnings
 from .contender import Contender, of_fit, of_nominal
 from .fit import Fit, Fitter
 from .hypothesis import Hypothesis
+from .nearby import points_around
 from .predictive import is_right, mean_square
+from .thresholds import CLEAR, beyond_thresholds
 
 __all__ = ["Search"]
 
 Floats = NDArray[np.float64]
 
-# Fits that take so much off the objective are worth another look; less than so much off the nominal model's is not
-# worth any, for the prior asks for as much (the latter times the numbers that count as one).
-_CLEAR, _WORTH = 20.0, 9.0
+# What takes less than so much, times the numbers that count as one, off the nominal model's objective is not worth
+# another look, for the prior asks for as much.
+_WORTH = 9.0
 # Trial points of a fit: of an effect that leads after the scan (so many do), and of another (where nothing is better
 # than neutral only the derivatives are taken); where a fit has only to follow another noise; of a pair, and where a
 # good fit is taken further.
 _LEADING, _LEADING_POINTS, _POINTS, _IDLE_POINTS, _PAIR_POINTS, _POLISH_POINTS = 6, 6, 4, 2, 4, 6
-# Shares of the way from neutral to each end of a range that are tried where nothing explains the gap, how often the
-# stretches beside the best of them are halved (where nothing moves at first, where it moves at once), for effects with
-# no more parameters than this, for each of so many trials that are farthest off; the best points that are kept.
-_GRID, _HALVINGS, _EARLY_HALVINGS, _FEW, _WORST, _HINTS = (0.2, 0.5, 0.8, 1.0), 10, 3, 2, 3, 2
-# A stretch whose ends differ by less has nothing in it; what is beyond a threshold may by chance be as bad as before.
-_MOVED = 2.0
 # How many fits are held against their own noise, how often it is measured after a further fit at most, and what that
 # must take off the objective for another round.
 _SETTLED, _ROUNDS, _ENOUGH = 2, 2, 5.0
@@ -46,19 +42,14 @@ _SETTLED, _ROUNDS, _ENOUGH = 2, 2, 5.0
 _NEAR, _MOST_NEAR = 300.0, 6
 # A gap is left where the mean square stays above this against the likeliest noise.
 _WANTING = 1.1
-# Beginnings: so many hypotheses are tried at so many points over their range (of one parameter, of more), and from the
-# best of these fitted to these shares of the trials' time one after another, in so many trial points.
-_REFINED, _ONE_PARAMETER_POINTS, _MORE_POINTS, _STAGES, _STAGE_POINTS = 2, 8, 16, (0.25, 0.5), 4
-# Of more parameters than this, points over the range tell nothing: from all close starts, then from the best so
-# many, these shares are fitted.
-_MANY, _FOLLOWED = 4, ((0.1, None), (0.25, 4), (0.5, 2))
+# Hypotheses that are fitted again from the beginnings of the trials.
+_REFINED = 2
 # Effects to which a second is added, the farther ones only where the best leaves a gap, and they leave no more than so
 # much of its objective beyond it; seconds that are fitted with each; singles that are joined two and two, and joints
 # that are fitted.
 _FIRSTS, _NEAR_BEST, _SECONDS, _JOINED, _JOINTS = 2, 0.5, 3, 4, 2
-# Points around a fit that are looked at, their spread in standard deviations and in shares of the ranges, how many of
-# them are fitted on in so many trial points, and how often all this.
-_SHAKEN, _SPREADS, _SHARES, _SHAKEN_FITS, _SHAKEN_POINTS, _SHAKES = 18, (1.0, 2.0, 4.0), (0.02, 0.05, 0.1), 2, 3, 2
+# How many of the points around a fit are fitted on in so many trial points, and how often all this.
+_SHAKEN_FITS, _SHAKEN_POINTS, _SHAKES = 2, 3, 2
 # Pairs whose beginnings are searched, and singles for which one of the best pair is exchanged.
 _PAIRS_REFINED, _EXCHANGED = 2, 6
 
@@ -121,14 +112,14 @@ class Search:
         made = self._refined(singles, _REFINED)
         if self._is_wanting(made[0]):
             for k, contender in enumerate(made):
-                if len(contender.point) > _MANY and contender.names != singles[0].names:
+                if len(contender.point) > MANY and contender.names != singles[0].names:
                     self.tell("points over the whole range", _REFINED, _REFINED)
-                    made[k] = self._from_beginnings(contender)
+                    made[k] = from_beginnings(self.fitter, contender, self.possible, self.seed)
         return sorted(made, key=_total)
 
     def _nested(self, pair: Contender, single: Contender) -> Contender:
         """Fit the best single effect again from where it is in a pair: alone it must not have been fitted less far."""
-        if single.names[0] not in pair.names or pair.total > single.total - _CLEAR:
+        if single.names[0] not in pair.names or pair.total > single.total - CLEAR:
             return single
         assert single.fit is not None
         (kind,) = single.fit.hypothesis.kinds
@@ -158,61 +149,20 @@ class Search:
         return mean_square(self.comparison, contender.residual) > _WANTING
 
     def _searched(self, nominal: Contender, singles: Sequence[Contender]) -> list[Contender]:
-        """Fit effects of few parameters again from the best point on a line through their ranges.
-
-        A threshold shows only beyond it, and what lies just beyond is neither like the nominal motion nor like what
-        lies far beyond: the lines are halved on either side of their best points, for the trials that are most off.
-        """
+        """Fit effects of few parameters again from the best point on a line through their ranges."""
         fitter = self.fitter
-        # By number: a robot that soon leaves the view says little, but may be farther off than any.
-        off = [fitter.trial_cost(nominal.residual, i) / max(self.comparison.sizes[i], 1) for i in fitter.trials]
-        wrong = tuple(int(i) for i in np.argsort(off, kind="stable")[-_WORST:] if off[i] > 1.0)
         made = list(singles)
         for k, contender in enumerate(singles):
             self.tell("lines through every range", k, len(singles))
             assert contender.fit is not None
-            hypothesis, count = contender.fit.hypothesis, len(contender.point)
-            if count > _FEW:
-                continue
-            ends = [
-                end * unit
-                for ends in (hypothesis.low, hypothesis.high)
-                for end, unit in zip(ends, np.eye(count), strict=True)
-            ]
-            found: list[tuple[float, Floats]] = []
-            for i in wrong:
-                still = fitter.cost(nominal.residual, np.zeros(count), (i,))
-                lines = [self._along(hypothesis, end, still, i) for end in ends if np.any(end)]
-                found += [(cost - still, point) for cost, point in lines if cost < still - _CLEAR]
-            points = [point for _, point in sorted(found, key=lambda entry: entry[0])[:_HINTS]]
+            hypothesis = contender.fit.hypothesis
+            points = beyond_thresholds(fitter, hypothesis, nominal.residual)
             self.hints[contender.names] = points
             for point, residual in zip(points, fitter.residuals(hypothesis, points), strict=True):
-                if fitter.cost(residual, point) < made[k].cost - _CLEAR:
+                if fitter.cost(residual, point) < made[k].cost - CLEAR:
                     other = of_fit(fitter, fitter.fit(hypothesis, point, evaluations=_LEADING_POINTS))
                     made[k] = min(made[k], other, key=_total)
         return made
-
-    def _along(self, hypothesis: Hypothesis, end: Floats, still: float, trial: int) -> tuple[float, Floats]:
-        """Return the least objective of a trial between neutral and an end of the range, and its point."""
-        known = {0.0: still}
-        shares: Sequence[float] = _GRID
-        halvings = _HALVINGS
-        while halvings >= 0:
-            points = [share * end for share in shares]
-            residuals = self.fitter.residuals(hypothesis, points, (trial,))
-            for share, point, residual in zip(shares, points, residuals, strict=True):
-                known[share] = self.fitter.cost(residual, point, (trial,))
-            order, least = sorted(known), min(known.values())
-            # Of a plateau, its far end: beyond it something begins to move.
-            place = max(n for n, share in enumerate(order) if known[share] < least + _CLEAR)
-            near = order[max(place - 1, 0) : place + 2]
-            shares = [0.5 * (a + b) for a, b in pairwise(near) if abs(known[a] - known[b]) > _MOVED]
-            if len(known) == 1 + len(_GRID) and abs(known[_GRID[0]] - still) > _CLEAR:
-                # No plateau: what is better than neutral is for least squares to find, what is not may begin early.
-                halvings = 0 if least < still - _CLEAR else _EARLY_HALVINGS
-            halvings = halvings - 1 if shares else -1
-        best = min(known, key=lambda share: known[share])
-        return known[best], best * end
 
     def _settled(self, contenders: Sequence[Contender]) -> list[Contender]:
         """Hold the best so many against their own noise and fit them on; the best first."""
@@ -248,7 +198,7 @@ class Search:
             assert best.fit is not None
             hypothesis = best.fit.hypothesis
             self.fitter.take_likeliest_noise(best.effects)
-            points = self._around(best.fit, rng)
+            points = points_around(best.fit, self.comparison.alike, rng)
             residuals = self.fitter.residuals(hypothesis, points)
             costs = [self.fitter.cost(residual, point) for residual, point in zip(residuals, points, strict=True)]
             starts = [points[n] for n in np.argsort(costs, kind="stable")[:_SHAKEN_FITS]]
@@ -258,16 +208,6 @@ class Search:
                 break
             best = replace(other, settled=True)
         return best
-
-    def _around(self, fit: Fit, rng: np.random.Generator) -> list[Floats]:
-        """Return points around a fit, within the range."""
-        count = len(fit.point)
-        root = np.linalg.cholesky(fit.covariance(self.comparison.alike))
-        spreads = [*(spread * root for spread in _SPREADS), *(share * np.eye(count) for share in _SHARES)]
-        low, high = fit.hypothesis.low, fit.hypothesis.high
-        return [
-            np.clip(fit.point + spreads[k % len(spreads)] @ rng.normal(size=count), low, high) for k in range(_SHAKEN)
-        ]
 
     def _each_by_itself(self, contenders: Sequence[Contender]) -> list[Contender]:
         """Hold what comes near the best against its own noise too: another's may flatter it, or wrong it."""
@@ -320,60 +260,9 @@ class Search:
         made = list(contenders)
         for k, contender in enumerate(made[:count]):
             self.tell("points over the whole range", k, count)
-            if k == 0 or len(contender.point) <= _MANY:
-                made[k] = self._from_beginnings(contender)
+            if k == 0 or len(contender.point) <= MANY:
+                made[k] = from_beginnings(self.fitter, contender, self.possible, self.seed)
         return sorted(made, key=_total)
-
-    def _from_beginnings(self, contender: Contender) -> Contender:
-        """Fit a contender again, the beginnings of the trials first, or return it as it is where there are none."""
-        fitter = self.fitter
-        tracked = tuple(i for i in fitter.trials if len(self.comparison.readers[i].observed.time_s))
-        if not tracked:
-            return contender
-        assert contender.fit is not None
-        fitter.take_likeliest_noise(contender.effects)
-        hypothesis = contender.fit.hypothesis
-        begin = self._followed if len(contender.point) > _MANY else self._sampled
-        point = begin(contender, tracked)
-        fit = fitter.fit(hypothesis, point, evaluations=_POLISH_POINTS)
-        return of_fit(fitter, min(fitter.again(contender.fit), fit, key=lambda fit: fit.cost))
-
-    def _sampled(self, contender: Contender, tracked: tuple[int, ...]) -> Floats:
-        """Return the point that is best for the beginnings, of many over the range, fitted to more and more of them."""
-        assert contender.fit is not None
-        hypothesis = contender.fit.hypothesis
-        free = hypothesis.high > hypothesis.low
-        points = _ONE_PARAMETER_POINTS if free.sum() < 2 else _MORE_POINTS
-        shares = qmc.Sobol(len(free), rng=np.random.default_rng(self.seed)).random(points)
-        tried: list[Floats] = [hypothesis.low + share * (hypothesis.high - hypothesis.low) for share in shares]
-        residuals = self.fitter.residuals(hypothesis, tried, tracked, _STAGES[0])
-        costs = [self.fitter.cost(residual, point, tracked) for residual, point in zip(residuals, tried, strict=True)]
-        point = tried[int(np.argmin(costs))]
-        for stage in _STAGES:
-            point = self.fitter.fit(hypothesis, point, tracked, _STAGE_POINTS, stage).point
-        return point
-
-    def _followed(self, contender: Contender, tracked: tuple[int, ...]) -> Floats:
-        """Return the point that is best after fits from all close starts, fewer of them over more of the trials."""
-        assert contender.fit is not None
-        hypothesis = contender.fit.hypothesis
-        points = self._starts_within(contender)
-        for stage, count in _FOLLOWED:
-            fits = [self.fitter.fit(hypothesis, point, tracked, _STAGE_POINTS, stage) for point in points[:count]]
-            points = [fit.point for fit in sorted(fits, key=lambda fit: fit.cost)]
-        return points[0]
-
-    def _starts_within(self, contender: Contender) -> list[Floats]:
-        """Return a contender's point with the effect that has most parameters at each of its close starts."""
-        kinds = [next(h for h in self.possible if h.names == (name,)) for name in contender.names]
-        most = max(range(len(kinds)), key=lambda n: len(kinds[n].neutral))
-        first = sum(len(h.neutral) for h in kinds[:most])
-        points = []
-        for start in kinds[most].close:
-            point = contender.point.copy()
-            point[first : first + len(start)] = start
-            points.append(point)
-        return points
 
     def _pairs(self, singles: Sequence[Contender], strong: bool) -> list[Contender]:
         """Add a second effect to the best; none where none shows."""
@@ -427,7 +316,7 @@ class Search:
         scans = self.fitter.scan(joined, bases, first.residual, first.fit.jacobian)
         costs = [points[0][0] for points in scans]
         for k in np.argsort(costs, kind="stable")[:_SECONDS]:
-            if costs[k] < first.cost - _CLEAR:
+            if costs[k] < first.cost - CLEAR:
                 self._keep(joined[k], scans[k][0][1], found)
 
     def _joined(self, singles: Sequence[Contender], found: dict[frozenset[str], Contender]) -> None:

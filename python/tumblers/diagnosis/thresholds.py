@@ -1,0 +1,82 @@
+"""Points beyond the thresholds of an effect: on lines from neutral to the ends of its range.
+
+A threshold shows only beyond it, and what lies just beyond is neither like the nominal motion nor like what lies far
+beyond: the lines are halved on either side of their best points, for the trials that are most off.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .comparison import Residual
+from .fit import Fitter
+from .hypothesis import Hypothesis
+
+__all__ = ["CLEAR", "beyond_thresholds"]
+
+Floats = NDArray[np.float64]
+
+# What takes so much off the objective is worth another look.
+CLEAR = 20.0
+# Shares of the way from neutral to each end of a range that are tried, how often the stretches beside the best of them
+# are halved (where nothing moves at first, where it moves at once), for effects with no more parameters than this, for
+# each of so many trials that are farthest off; the best points that are kept.
+_GRID, _HALVINGS, _EARLY_HALVINGS, _FEW, _WORST, _HINTS = (0.2, 0.5, 0.8, 1.0), 10, 3, 2, 3, 2
+# A stretch whose ends differ by less has nothing in it; what is beyond a threshold may by chance be as bad as before.
+_MOVED = 2.0
+
+
+def beyond_thresholds(fitter: Fitter, hypothesis: Hypothesis, nominal: Residual) -> list[Floats]:
+    """Return the points that are much better than the nominal model for a trial in which that is most off, best first.
+
+    Parameters
+    ----------
+    fitter
+        Of the dataset.
+    hypothesis
+        An effect; one of many parameters has too many lines, and gets none.
+    nominal
+        How wrong the nominal model is.
+    """
+    count = len(hypothesis.neutral)
+    if count > _FEW:
+        return []
+    # By number: a robot that soon leaves the view says little, but may be farther off than any.
+    off = [fitter.trial_cost(nominal, i) / max(fitter.comparison.sizes[i], 1) for i in fitter.trials]
+    wrong = tuple(int(i) for i in np.argsort(off, kind="stable")[-_WORST:] if off[i] > 1.0)
+    ends = [
+        end * unit for ends in (hypothesis.low, hypothesis.high) for end, unit in zip(ends, np.eye(count), strict=True)
+    ]
+    found: list[tuple[float, Floats]] = []
+    for i in wrong:
+        still = fitter.cost(nominal, np.zeros(count), (i,))
+        lines = [_along(fitter, hypothesis, end, still, i) for end in ends if np.any(end)]
+        found += [(cost - still, point) for cost, point in lines if cost < still - CLEAR]
+    return [point for _, point in sorted(found, key=lambda entry: entry[0])[:_HINTS]]
+
+
+def _along(fitter: Fitter, hypothesis: Hypothesis, end: Floats, still: float, trial: int) -> tuple[float, Floats]:
+    """Return the least objective of a trial between neutral and an end of the range, and its point."""
+    known = {0.0: still}
+    shares: Sequence[float] = _GRID
+    halvings = _HALVINGS
+    while halvings >= 0:
+        points = [share * end for share in shares]
+        residuals = fitter.residuals(hypothesis, points, (trial,))
+        for share, point, residual in zip(shares, points, residuals, strict=True):
+            known[share] = fitter.cost(residual, point, (trial,))
+        order, least = sorted(known), min(known.values())
+        # Of a plateau, its far end: beyond it something begins to move.
+        place = max(n for n, share in enumerate(order) if known[share] < least + CLEAR)
+        near = order[max(place - 1, 0) : place + 2]
+        shares = [0.5 * (a + b) for a, b in pairwise(near) if abs(known[a] - known[b]) > _MOVED]
+        if len(known) == 1 + len(_GRID) and abs(known[_GRID[0]] - still) > CLEAR:
+            # No plateau: what is better than neutral is for least squares to find, what is not may begin early.
+            halvings = 0 if least < still - CLEAR else _EARLY_HALVINGS
+        halvings = halvings - 1 if shares else -1
+    best = min(known, key=lambda share: known[share])
+    return known[best], best * end
