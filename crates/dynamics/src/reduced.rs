@@ -216,6 +216,10 @@ impl<const N: usize> Rows<N> {
             value[i] = moment[i] / scales.moment;
             error = error.max(moment[i].abs() / (scales.load * step.size));
         }
+        // `max` passes over NaN, and a point without numbers would count as solved.
+        if value.iter().any(|row| row.is_nan()) {
+            error = f64::INFINITY;
+        }
         let slips = friction.as_ref().is_some_and(FrictionRows::slips);
         let at = Evaluation { unknowns: *x, linear, rotation, height, normal, arm, slip, slips, error };
         Self { at, value, points, friction }

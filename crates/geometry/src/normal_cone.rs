@@ -28,7 +28,8 @@ pub(crate) enum NormalCone {
 
 /// The multipliers have to reproduce a unit direction to this error.
 pub(crate) const REPRODUCED: f64 = 1e-6;
-/// Three unit normals whose determinant is below this make no simplex.
+/// Unit normals make no simplex where the sine between two, or between the third and the plane of the two that are farthest
+/// apart, is below this. Three that are close together still span one: those of the many faces of a flat body.
 const DEGENERATE: f64 = 1e-9;
 /// Above this number of faces at a vertex their cone is cut into a fan instead of into all triples.
 const ALL_TRIPLES: usize = 8;
@@ -59,11 +60,13 @@ fn pseudo_inverse(gradients: &[Vector3<f64>; 3], count: usize) -> Option<Matrix3
             [b.cross(&normal) / square, normal.cross(a) / square, Vector3::zeros()]
         }
         _ => {
-            let determinant = a.dot(&b.cross(c));
-            if determinant.abs() < DEGENERATE {
+            let crosses = [b.cross(c), c.cross(a), a.cross(b)];
+            let determinant = a.dot(&crosses[0]);
+            let widest = crosses.iter().map(|cross| cross.norm()).fold(0.0, f64::max);
+            if determinant.abs() < DEGENERATE * widest {
                 return None;
             }
-            [b.cross(c) / determinant, c.cross(a) / determinant, a.cross(b) / determinant]
+            crosses.map(|cross| cross / determinant)
         }
     };
     Some(Matrix3::from_rows(&rows.map(|r| r.transpose())))
