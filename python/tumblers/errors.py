@@ -12,7 +12,11 @@ _LONGEST = 80
 
 def show(value: object) -> str:
     """Return `value` as one short line of text."""
-    text = " ".join(repr(value).split())
+    try:
+        text = " ".join(repr(value).split())
+    except (RecursionError, ValueError):
+        # Tables nested too deeply, and integers of more digits than Python writes.
+        return f"a value of type {type(value).__name__} that is too long to show"
     return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
 
 

@@ -33,6 +33,9 @@ def parse_toml(text: str) -> dict[str, Any]:
         raise InputError(None, "malformed TOML: brackets nested too deeply", "valid TOML") from None
     except tomllib.TOMLDecodeError as error:
         raise InputError(None, f"malformed TOML: {_twice(text, str(error)) or error}", "valid TOML") from None
+    except ValueError:
+        # Beside malformed TOML only what `int` refuses.
+        raise InputError(None, "malformed TOML: an integer of too many digits", "valid TOML") from None
 
 
 def _twice(text: str, message: str) -> str | None:

@@ -89,11 +89,15 @@ def read_records(directory: str | PathLike[str], answers: str | PathLike[str]) -
     try:
         entries = [(entry["dataset"], entry["salt"], entry["answer"]) for entry in table["answers"]]
         seed = int(table["seed"])
-    except (KeyError, TypeError, ValueError):
+    except (KeyError, OverflowError, TypeError, ValueError):
         raise InputError(
             "answers", "no list of datasets, salts and answers", f"a {ANSWERS_FORMAT} file", answers
         ) from None
     names = [name for name, _, _ in entries]
+    for name in names:
+        # A path could lead out of the folder.
+        if not isinstance(name, str) or name in ("", ".", "..") or Path(name).name != name:
+            raise InputError("answers", f"the dataset {show(name)}", "the name of a folder of datasets", answers)
     for path in sorted(directory.glob("dataset-*")):
         if path.name not in names:
             raise InputError("answers", f"no answer for {path.name}", "one for every dataset", answers)
@@ -104,11 +108,11 @@ def read_records(directory: str | PathLike[str], answers: str | PathLike[str]) -
 
 def _record(folder: Path, salt: object, answer: object, answers: Path) -> Record:
     sealed = _json(folder / SEAL, "tumblers-seal/1")
-    if not isinstance(salt, str) or not isinstance(answer, dict) or sealed.get("sha256") != seal(salt, answer):
+    if not isinstance(salt, str) or not isinstance(answer, dict) or not _is_sealed(sealed, salt, answer):
         raise InputError(folder.name, "an answer that is not the sealed one", f"that of {folder / SEAL}", answers)
     try:
         truth = Answer.from_table(answer)
-    except (KeyError, TypeError, ValueError):
+    except (AttributeError, KeyError, OverflowError, TypeError, ValueError):
         raise InputError(folder.name, show(answer), "an answer of this version", answers) from None
     diagnosis = _json(folder / DIAGNOSIS, _DIAGNOSIS_FORMAT) if (folder / DIAGNOSIS).exists() else None
     run = _json(folder / RECORD, "tumblers-blind-run/1") if (folder / RECORD).exists() else {}
@@ -126,12 +130,20 @@ def _record(folder: Path, salt: object, answer: object, answers: Path) -> Record
     )
 
 
+def _is_sealed(sealed: Mapping[str, Any], salt: str, answer: Mapping[str, Any]) -> bool:
+    try:
+        return bool(sealed.get("sha256") == seal(salt, answer))
+    except (RecursionError, ValueError):
+        # What JSON cannot hold has no seal: NaN, half a character, tables nested too deeply.
+        return False
+
+
 def _json(path: Path, version: str) -> dict[str, Any]:
     try:
         table = json.loads(path.read_bytes())
     except OSError as error:
         raise InputError(None, unreadable(error), f"a {version} file", path) from None
-    except ValueError:
+    except (RecursionError, ValueError):
         raise InputError(None, "malformed JSON", f"a {version} file", path) from None
     if not isinstance(table, dict) or table.get("format") != version:
         raise InputError(

@@ -48,7 +48,10 @@ def load(path: str | PathLike[str]) -> Dataset:
     try:
         if file.is_dir():
             file /= _FILE
+            _inside(None, _FILE, file.parent)
         contents = file.read_bytes().decode("utf-8-sig")
+    except InputError as error:
+        raise error.in_file(file) from None
     except OSError as error:
         raise InputError(None, unreadable(error), f"a {FORMAT} file", file) from None
     except ValueError as error:
@@ -135,7 +138,7 @@ def _track(value: object, directory: Path, sensor: Sensor) -> Track:
     return read_track_csv("track", path, repr(str(value))[1:-1], sensor)
 
 
-def _inside(key: str, name: object, directory: Path) -> Path:
+def _inside(key: str | None, name: object, directory: Path) -> Path:
     """Return the path of a file in the dataset's folder, or refuse one that is elsewhere or no file."""
     path = Path(str(name))
     if path.is_absolute():
@@ -146,7 +149,7 @@ def _inside(key: str, name: object, directory: Path) -> Path:
             raise InputError(key, f"{show(name)}, which leads out of the dataset's folder", "a file in it")
         # A pipe or a device would be waited for without end.
         if found.exists() and not found.is_file() and not found.is_dir():
-            raise InputError(key, f"{show(name)}, which is no regular file", "a readable CSV file")
+            raise InputError(key, f"{show(name)}, which is no regular file", "a file that can be read")
     except (OSError, RuntimeError):
         raise InputError(key, f"{show(name)}, which cannot be followed", "a file in the dataset's folder") from None
     except ValueError as error:
