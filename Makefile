@@ -9,7 +9,7 @@ SOURCES := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Carg
 # One interpreter for every cargo call, or pyo3 would be built again for each other one that it finds.
 export PYO3_PYTHON := $(abspath $(BIN)/python)
 
-.PHONY: sweep test lint rust-test python-test dozen bench peers clean
+.PHONY: sweep test lint rust-test python-test dozen fuzz bench peers deny clean
 
 sweep: $(VENV)/installed
 	$(BIN)/tumblers sweep --robot spiked --out sweep-spiked.nc --plot sweep-spiked.png
@@ -37,6 +37,15 @@ dozen: $(VENV)/installed $(VENV)/developing
 
 bench:
 	cargo bench -p tumblers-benches --locked
+
+# Ten million steps of random bodies, and the readers: about an hour of one core. See docs/trust.md.
+fuzz: $(VENV)/installed $(VENV)/developing
+	cargo test --release --locked -p tumblers-dynamics --test fuzz -- --ignored
+	TUMBLERS_FUZZ_EXAMPLES=5000 $(BIN)/pytest tests/trust/test_readers.py
+
+# Needs cargo-deny.
+deny:
+	cargo deny --locked check
 
 # Beside other simulators, which are installed for this alone.
 peers: $(VENV)/installed

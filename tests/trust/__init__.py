@@ -1,0 +1,1 @@
+"""What the numbers can be trusted for (docs/trust.md)."""
