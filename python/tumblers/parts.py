@@ -7,6 +7,7 @@ import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
+from shutil import rmtree
 from typing import TYPE_CHECKING, Any
 
 from .atomic import write_files
@@ -119,7 +120,7 @@ class Parts:
 
 @contextmanager
 def resumable(folder: Path) -> Iterator[None]:
-    """Say on Ctrl-C that what was done is kept.
+    """Say on Ctrl-C that what was done is kept; where nothing was, the folder goes, too.
 
     Parameters
     ----------
@@ -129,9 +130,12 @@ def resumable(folder: Path) -> Iterator[None]:
     try:
         yield
     except KeyboardInterrupt:
-        if not folder.exists():
+        names = [file.name for file in folder.iterdir()] if folder.exists() else []
+        done = sum(name != _SETTINGS and not name.startswith(".") for name in names)
+        if not done:
+            if _SETTINGS in names:
+                rmtree(folder)
             raise
-        done = sum(file.name != _SETTINGS and not file.name.startswith(".") for file in folder.iterdir())
         sys.stderr.write(f"tumblers: interrupted, {done} parts kept in {folder}: the same command goes on from there\n")
         raise SystemExit(130) from None
 

@@ -169,6 +169,7 @@ def test_parts_of_other_settings_are_refused(spiked: Scenario, tmp_path: Path) -
     with pytest.raises(InputError, match="parts: found another scenario in"):
         tumblers.design(other, samples=8, generations=0, errors=Errors(draws=8), parts=parts)
     (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "notes.txt").write_text("of someone")
     with pytest.raises(InputError, match="parts: found no such file"):
         tumblers.design(spiked, **SMALL, parts=tmp_path / "mine")
 
