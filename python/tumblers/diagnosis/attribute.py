@@ -41,8 +41,8 @@ Floats = NDArray[np.float64]
 # Prior odds: that there is no gap, one effect, two.
 _PRIOR = {0: 0.4, 1: 0.45, 2: 0.15}
 # ln of the odds that a second effect must win beside: one effect in a form that is not the catalogue's leaves what a
-# second could explain as well. Chosen from twelve datasets with a known truth in which two effects were named: where one
-# was at work the second had won 2.4 to 7.4 over the best single one, where two were 20 or more.
+# second could explain as well. Chosen from twelve datasets with a known truth in which two effects were named: where
+# one was at work the second had won 2.4 to 7.4 over the best single one, where two were 20 or more.
 SECOND = 10.0
 # How often the likeliest is wrong however strong the evidence: a form that the catalogue lacks, a minimum that no
 # search found. Shared by all, and of the order of what datasets with a known truth showed while this was developed.
