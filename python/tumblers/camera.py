@@ -47,7 +47,7 @@ class Camera:
             Positions, substrate frame, m, shape (..., 3).
         """
         seen: NDArray[np.float64] = np.array(position_m, dtype=np.float64)
-        if self == Camera():
+        if self.scale == 1.0 and self.heading_deg == 0.0:
             return seen
         x, y = seen[..., 0].copy(), seen[..., 1].copy()
         c, s = cos(radians(self.heading_deg)), sin(radians(self.heading_deg))

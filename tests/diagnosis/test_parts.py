@@ -92,7 +92,7 @@ def test_the_derivatives_by_the_nuisances_are_those_of_the_differences(quaternio
     steps = np.array([2e-4, 1e-8, 1e-8, 1e-5, 1e-6])
     for reader, path in zip(comparison.readers, comparison.nominal_paths, strict=True):
         assert path is not None
-        columns, here = reader.nuisance_columns(path, local, camera), reader.differences(path, local, camera)
+        columns, here = reader.linearised(path, local, camera), reader.differences(path, local, camera)
         for k, step in enumerate(steps):
             move = step * np.eye(5)[k]
             # A path is linear between its rows: a centred difference would not see its kinks as a forward one does.

@@ -188,9 +188,7 @@ class Comparison:
     @property
     def sizes(self) -> tuple[int, ...]:
         """Number of numbers that were measured in each trial."""
-        return tuple(
-            sum(int(kept.sum()) for kept in floor.valid.values()) + len(floor.outcome_scale) for floor in self.floors
-        )
+        return tuple(floor.size for floor in self.floors)
 
     def weight(self, trial: int, values: Floats) -> float:
         """Return how much a trial's track counts: less where the model is far from it (`Fitter`'s objective).
@@ -202,7 +200,7 @@ class Comparison:
         values
             Its whitened differences, shape (n_i,).
         """
-        track = values[: self.sizes[trial] - len(self.floors[trial].outcome_scale)]
+        track = values[: self.floors[trial].tracked]
         return 1.0 / (1.0 + robust_cost(track) / (FAR * len(track))) if len(track) else 1.0
 
     def labels(self, trial: int) -> list[tuple[str, Floats]]:
@@ -276,7 +274,7 @@ class Comparison:
     def _whitened(self, trial: int, path: Path | None, local: Floats, shared: Floats, share: float) -> Floats:
         floor, reader = self.floors[trial], self.readers[trial]
         if path is None:
-            return np.full(self.sizes[trial], _NOT_RUN)
+            return np.full(floor.size, _NOT_RUN)
         differences = reader.differences(path, local, shared[:2])
         parts = [floor.whiten[name] @ differences[name][kept] for name, kept in floor.valid.items()]
         parts.append(self._outcomes(trial, path, shared[:2]))
@@ -285,7 +283,7 @@ class Comparison:
     def _counts(self, trial: int, share: float) -> Floats:
         """1 for the numbers of a trial that count, 0 for the others, shape (n_i,)."""
         if share >= 1.0:
-            return np.ones(self.sizes[trial])
+            return np.ones(self.floors[trial].size)
         floor, reader = self.floors[trial], self.readers[trial]
         last = share * reader.duration_s - self._bounds[trial, 0]
         parts = [reader.observed.time_s[kept] <= last for kept in floor.valid.values()]
@@ -300,22 +298,20 @@ class Comparison:
         floor, reader, bound = self.floors[trial], self.readers[trial], self._bounds[trial, 0]
         if path is None or not len(reader.observed.time_s) or bound == 0.0:
             return 0.0
-        best = (np.inf, 0.0)
         last = share * reader.duration_s - bound if share < 1.0 else np.inf
-        early = {name: reader.observed.time_s[kept] <= last for name, kept in floor.valid.items()}
-        for offset in bound * _CLOCKS:
-            differences = reader.differences(path, np.array([offset, 0.0, 0.0]), np.zeros(2))
-            loss = (offset / self.local_sigmas[trial, 0]) ** 2
-            for name, kept in floor.valid.items():
-                values = (floor.whiten[name] @ differences[name][kept]) * early[name]
-                if name in ("x", "y") and len(values):
-                    # What a shift of the origin cannot explain.
-                    shift = floor.whiten[name].sum(axis=1) * early[name]
-                    weight = (self.local_sigmas[trial, 1]) ** -2
-                    values = values - shift * ((shift @ values) / (shift @ shift + weight))
-                loss += float(np.sum(np.minimum(values**2, _OUTLIER**2)))
-            best = min(best, (loss, float(offset)))
-        return best[1]
+        clocks = bound * _CLOCKS
+        losses = (clocks / self.local_sigmas[trial, 0]) ** 2
+        differences = reader.differences_by_clock(path, clocks)
+        for name, kept in floor.valid.items():
+            early = reader.observed.time_s[kept] <= last
+            values = (floor.whiten[name] @ differences[name][:, kept].T) * early[:, None]
+            if name in ("x", "y") and len(values):
+                # What a shift of the origin cannot explain.
+                shift = floor.whiten[name].sum(axis=1) * early
+                weight = (self.local_sigmas[trial, 1]) ** -2
+                values = values - np.outer(shift, shift @ values) / (shift @ shift + weight)
+            losses += np.sum(np.minimum(values**2, _OUTLIER**2), axis=0)
+        return float(clocks[np.argmin(losses)])
 
     def _improved(
         self,
@@ -337,13 +333,8 @@ class Comparison:
                 continue
             table = np.empty((0, 6))
             if len(reader.observed.time_s):
-                here = reader.differences(path, local[i], shared[:2])
-                columns = reader.nuisance_columns(path, local[i], shared[:2])
-                rows = [
-                    floor.whiten[name] @ np.column_stack([columns[name][kept], here[name][kept]])
-                    for name, kept in floor.valid.items()
-                ]
-                table = np.concatenate(rows)
+                found = reader.linearised(path, local[i], shared[:2])
+                table = np.concatenate([floor.whiten[name] @ found[name][kept] for name, kept in floor.valid.items()])
             outcomes = self._outcomes(i, path, shared[:2])
             table = np.vstack([table, np.column_stack([np.zeros((len(outcomes), 5)), outcomes])])
             a, r = table[:, :3], table[:, 5] - floor.tolerance @ shared[2:]

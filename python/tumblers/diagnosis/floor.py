@@ -27,6 +27,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -98,6 +99,16 @@ class Floor:
     log_determinant: float
     numerical_sigmas: float
     tolerance_sigmas: float
+
+    @cached_property
+    def tracked(self) -> int:
+        """Number of numbers that were measured along the track."""
+        return sum(int(kept.sum()) for kept in self.valid.values())
+
+    @cached_property
+    def size(self) -> int:
+        """Number of numbers that were measured, outcomes with them."""
+        return self.tracked + len(self.outcome_scale)
 
 
 def _scaled_moment(scenario: Scenario) -> Scenario:

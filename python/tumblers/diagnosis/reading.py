@@ -76,22 +76,45 @@ class Reader:
         camera
             Heading (rad) and scale, shape (2,).
         """
-        seen = self.observed
-        if not len(seen.time_s):
+        if not len(self.observed.time_s):
             return {}
-        position, orientation = seen_by(path, seen.time_s, local, camera)
-        out = {name: seen.values[name] - position[:, k] for k, name in enumerate("xyz") if name in seen.values}
+        return self._wrong(*seen_by(path, self.observed.time_s, local, camera), 1)
+
+    def differences_by_clock(self, path: Path, clocks_s: Floats) -> dict[str, Floats]:
+        """Return `differences` for several clocks and otherwise perfect sensors, by channel, shape (k, n).
+
+        Parameters
+        ----------
+        path
+            The model's.
+        clocks_s
+            Offsets of the clock, s, shape (k,).
+        """
+        times = (self.observed.time_s + clocks_s[:, None]).ravel()
+        wrong = self._wrong(*seen_by(path, times, np.zeros(3), np.zeros(2)), len(clocks_s))
+        return {name: values.reshape(len(clocks_s), -1) for name, values in wrong.items()}
+
+    def _wrong(self, position: Floats, orientation: Floats, times: int) -> dict[str, Floats]:
+        """Return `measured - model` by channel, for poses (k n, 3) and (k n, 4) of k times all frames."""
+        seen = self.observed
+
+        def measured(values: Floats) -> Floats:
+            return values if times == 1 else np.concatenate([values] * times)
+
+        out = {
+            name: measured(seen.values[name]) - position[:, k] for k, name in enumerate("xyz") if name in seen.values
+        }
         if seen.orientation is not None:
-            error = relative_turn(orientation, seen.orientation)
+            error = relative_turn(orientation, measured(seen.orientation))
             out["tilt"], out["twist"], out["heading"] = error[:, 0], error[:, 1], error[:, 2]
         elif "tilt" in seen.values or "heading" in seen.values:
             axis = body_axis(orientation)
             tilt = tilt_of(axis)
             if "tilt" in seen.values:
-                out["tilt"] = seen.values["tilt"] - tilt
+                out["tilt"] = measured(seen.values["tilt"]) - tilt
             if "heading" in seen.values:
                 # The projection of an axis that stands upright points nowhere.
-                wrong = seen.values["heading"] - heading_of(axis)
+                wrong = measured(seen.values["heading"]) - heading_of(axis)
                 out["heading"] = np.arctan2(np.sin(wrong), np.cos(wrong)) * np.cos(tilt)
         return out
 
@@ -139,29 +162,34 @@ class Reader:
             "tilt_deg": float(np.degrees(np.mean(tilt_of(body_axis(path.at(rest)[1]))))),
         }
 
-    def nuisance_columns(self, path: Path, local: Floats, camera: Floats) -> dict[str, Floats]:
-        """Return the differences' derivatives by the nuisances, by channel, shape (n, 5).
+    def linearised(self, path: Path, local: Floats, camera: Floats) -> dict[str, Floats]:
+        """Return the differences' derivatives by the nuisances and the differences, by channel, shape (n, 6).
 
-        By the trial's clock and origin (x, y) first, then by the camera's heading and scale.
+        By the trial's clock and origin (x, y) first, then by the camera's heading and scale; the differences last.
         """
-        here = self.differences(path, local, camera)
-        later = self.differences(path, local + np.array([_TIME_STEP_S, 0.0, 0.0]), camera)
-        position, orientation = path.at(self.observed.time_s + local[0])
-        columns: dict[str, Floats] = {}
-        for name, values in here.items():
-            by = np.zeros((len(values), 5))
-            by[:, 0] = (later[name] - values) / _TIME_STEP_S
+        time = self.observed.time_s
+        count = len(time)
+        if not count:
+            return {}
+        position, orientation = path.at(np.concatenate([time, time + _TIME_STEP_S]) + local[0])
+        wrong = self._wrong(*_through(position, orientation, local, camera), 2)
+        position, orientation = position[:count], orientation[:count]
+        tables: dict[str, Floats] = {}
+        for name, values in wrong.items():
+            table = np.zeros((count, 6))
+            table[:, 5] = values[:count]
+            table[:, 0] = (values[count:] - values[:count]) / _TIME_STEP_S
             if name == "x":
-                by[:, 1], by[:, 3], by[:, 4] = -1.0, position[:, 1], -position[:, 0]
+                table[:, 1], table[:, 3], table[:, 4] = -1.0, position[:, 1], -position[:, 0]
             elif name == "y":
-                by[:, 2], by[:, 3], by[:, 4] = -1.0, -position[:, 0], -position[:, 1]
+                table[:, 2], table[:, 3], table[:, 4] = -1.0, -position[:, 0], -position[:, 1]
             elif self.observed.orientation is not None and name in ("tilt", "twist", "heading"):
                 up = _upward(orientation)
-                by[:, 3] = -up[:, {"tilt": 0, "twist": 1, "heading": 2}[name]]
+                table[:, 3] = -up[:, {"tilt": 0, "twist": 1, "heading": 2}[name]]
             elif name == "heading":
-                by[:, 3] = -np.cos(tilt_of(body_axis(orientation)))
-            columns[name] = by
-        return columns
+                table[:, 3] = -np.cos(tilt_of(body_axis(orientation)))
+            tables[name] = table
+        return tables
 
 
 def climbed(share: float, climbs: bool) -> float:
@@ -200,7 +228,11 @@ def seen_by(path: Path, time_s: Floats, local: Floats, camera: Floats) -> tuple[
     camera
         Heading (rad) and scale, shape (2,).
     """
-    position, orientation = path.at(time_s + local[0])
+    return _through(*path.at(time_s + local[0]), local, camera)
+
+
+def _through(position: Floats, orientation: Floats, local: Floats, camera: Floats) -> tuple[Floats, Floats]:
+    """Return what a sensor reads of poses (n, 3) and (n, 4)."""
     seen = Camera(scale=1.0 + float(camera[1]), heading_deg=degrees(camera[0]))
     position = seen.seen_position(position)
     position[:, :2] += local[1:]

@@ -195,8 +195,8 @@ def _differences(comparison: Comparison, residual: Residual, trial: int, path: P
 def _nuisances(comparison: Comparison, residual: Residual, trial: int, path: Path) -> Floats:
     """Return the whitened columns of the nuisances in units of their priors, shape (n, m)."""
     floor = comparison.floors[trial]
-    columns = comparison.readers[trial].nuisance_columns(path, residual.local[trial], residual.camera)
-    parts = [floor.whiten[name] @ columns[name][kept] for name, kept in floor.valid.items()]
+    found = comparison.readers[trial].linearised(path, residual.local[trial], residual.camera)
+    parts = [floor.whiten[name] @ found[name][kept, :5] for name, kept in floor.valid.items()]
     rows = np.concatenate([*parts, np.zeros((len(floor.outcome_scale), 5))])
     sigmas = np.concatenate([comparison.local_sigmas[trial], comparison.shared_sigmas])
     return np.asarray(np.hstack([rows, -floor.tolerance]) * sigmas, dtype=np.float64)
