@@ -10,7 +10,7 @@ import pytest
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.loss import HUBER, robust_cost
 from tumblers.diagnosis.pose import Path, body_axis, heading_of, relative_turn, tilt_of
-from tumblers.diagnosis.reading import climbed
+from tumblers.diagnosis.reading import reached
 from tumblers.diagnosis.simulator import Simulator
 
 from .lab import measure, plan
@@ -63,16 +63,16 @@ def test_a_path_is_linear_between_its_rows_and_holds_its_ends() -> None:
 
 
 def test_an_outcome_that_was_foretold_costs_nothing_and_a_wrong_one_no_more_than_a_lapse() -> None:
-    assert climbed(1.0, True) == pytest.approx(0.0, abs=1e-3)
-    assert climbed(-1.0, False) == pytest.approx(0.0, abs=1e-3)
+    assert reached(1.0, True) == pytest.approx(0.0, abs=1e-3)
+    assert reached(-1.0, False) == pytest.approx(0.0, abs=1e-3)
     lapse = np.sqrt(-2.0 * np.log(0.01 / 0.99))
-    assert abs(climbed(-5.0, True)) == pytest.approx(lapse, rel=1e-6)
-    assert abs(climbed(5.0, False)) == pytest.approx(lapse, rel=1e-6)
+    assert abs(reached(-5.0, True)) == pytest.approx(lapse, rel=1e-6)
+    assert abs(reached(5.0, False)) == pytest.approx(lapse, rel=1e-6)
     shares = np.linspace(-0.5, 1.0, 200)
-    assert np.all(np.diff([abs(climbed(s, True)) for s in shares]) <= 0.0)
-    assert np.all(np.diff([abs(climbed(s, False)) for s in shares]) >= 0.0)
+    assert np.all(np.diff([abs(reached(s, True)) for s in shares]) <= 0.0)
+    assert np.all(np.diff([abs(reached(s, False)) for s in shares]) >= 0.0)
     # What the two borders pull towards.
-    assert np.sign(climbed(0.0, True)) == -np.sign(climbed(0.3, False))
+    assert np.sign(reached(0.0, True)) == -np.sign(reached(0.3, False))
 
 
 def test_the_loss_is_square_to_its_border_and_smooth_there() -> None:

@@ -22,7 +22,7 @@ Ints = NDArray[np.intp]
 # Contact modes as the core numbers them.
 MODES = ("airborne", "point", "line", "surface")
 # What an outcome tells of.
-_OF_OUTCOME = {"mean_speed": "y", "climbs": "y"}
+_OF_OUTCOME = {"mean_speed": "y", "climbs": "y", "slides": "y"}
 # Channels in which a robot that was knocked off its course stays off it, and the frames that say where it was before.
 _LASTING = ("x", "y", "heading")
 _BEFORE = 12

@@ -302,10 +302,14 @@ def _assumptions(comparison: Comparison, attribution: Attribution) -> tuple[str,
         "Evidence is Laplace's approximation; intervals are 90 % likelihood ratios along the ridge of the posterior.",
     ]
     tracks = [trial.track for trial in comparison.dataset.trials if trial.track is not None]
-    if any(
-        reader.observed.frames - reader.observed.lost > len(reader.observed.time_s) for reader in comparison.readers
-    ):
+    observed = [reader.observed for reader in comparison.readers]
+    if any(one.frames - one.lost > len(one.time_s) and not one.slid_m for one in observed):
         said.append("Of long tracks, frames at even distances are compared; the others add next to nothing.")
+    if any(one.slid_m for one in observed):
+        said.append(
+            "Of a robot that slides without a field, half of its way is compared, and that it slides as an outcome: "
+            "where it catches again is up to the spot."
+        )
     if any(np.isnan(column).any() for track in tracks for column in track.channels.values()):
         said.append(
             "Lost frames, and frames after the robot has left the view, are not compared: it is not at rest then."

@@ -13,7 +13,7 @@ from ..dataset import Dataset
 from ..field import RotatingField
 from .candidate import Candidate
 from .pose import Path, body_axis, tilt_of
-from .reading import climbed
+from .reading import reached
 from .simulator import Simulator
 
 __all__ = ["CLIMBS", "EVENTS", "RUNS", "SLIDES", "STAYS", "Foretold", "Said", "foretell"]
@@ -110,7 +110,7 @@ def foretell(
             if isinstance(field, RotatingField):
                 ends, _ = path.at(np.array([0.0, time]))
                 speed, drift = (float(ends[1, k] - ends[0, k]) / time for k in (1, 0))
-                chance = exp(-0.5 * climbed(speed / level, True) ** 2)
+                chance = exp(-0.5 * reached(speed / level, True) ** 2)
                 up = CLIMBS if option.incline_deg != 0.0 and chance > 0.5 else STAYS
                 gone = abs(speed) > _GONE * level
                 values.append([speed, drift])

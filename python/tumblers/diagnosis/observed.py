@@ -1,4 +1,8 @@
-"""`Observed`: what was measured in one trial, as numbers with their noise."""
+"""`Observed`: what was measured in one trial, as numbers with their noise.
+
+Of a robot that slides without a field, down a slope that should hold it, the first half of its way is compared, in
+which it gathers speed; that it slides counts as an outcome. Where it catches again is up to the spot.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..dataset import Dataset, LabTrial, Outcome
+from ..field import StaticField
 
 __all__ = ["CHANNELS", "Observed", "observe"]
 
@@ -18,6 +23,8 @@ Floats = NDArray[np.float64]
 CHANNELS = ("x", "y", "z", "tilt", "heading", "twist")
 # More frames than these add little, and their covariance costs the cube of their number.
 _MOST_FRAMES = 160
+# A robot without a field has slid if it went farther than this share of its length.
+_SLID = 0.25
 # A heading is not defined where the long axis stands upright.
 _LEAST_COSINE = 0.2
 
@@ -40,6 +47,8 @@ class Observed:
         One standard deviation by channel, m or rad.
     frame_interval_s
         Median time between the track's frames, s; 0 without a track.
+    slid_m
+        Way that the robot slid without a field, m; 0 where it held, or where there is a field.
     outcome
         What was noted beside or instead of the track.
     frames, lost
@@ -52,6 +61,7 @@ class Observed:
     orientation: Floats | None
     noise: dict[str, float]
     frame_interval_s: float
+    slid_m: float
     outcome: Outcome | None
     frames: int
     lost: int
@@ -78,23 +88,32 @@ def observe(dataset: Dataset) -> tuple[Observed, ...]:
     dataset
         What the lab measured.
     """
-    return tuple(_observed(dataset, trial) for trial in dataset.trials)
+    length_m = float(np.ptp(np.concatenate(dataset.robot.body().outline)[:, 1]))
+    return tuple(_observed(dataset, trial, length_m) for trial in dataset.trials)
 
 
-def _observed(dataset: Dataset, trial: LabTrial) -> Observed:
+def _observed(dataset: Dataset, trial: LabTrial, length_m: float) -> Observed:
     sensor, track = dataset.sensor, trial.track
     empty = np.empty(0)
     if track is None:
-        return Observed(trial.id, empty, {}, None, {}, 0.0, trial.outcome, 0, 0)
+        return Observed(trial.id, empty, {}, None, {}, 0.0, 0.0, trial.outcome, 0, 0)
     found = np.zeros(len(track.time_s), dtype=bool)
     for column in track.channels.values():
         found |= np.isfinite(column)
     kept = np.flatnonzero(found)
     if not len(kept):
-        return Observed(trial.id, empty, {}, None, {}, 0.0, trial.outcome, len(found), len(found))
+        return Observed(trial.id, empty, {}, None, {}, 0.0, 0.0, trial.outcome, len(found), len(found))
     if len(kept) > _MOST_FRAMES:
         kept = kept[np.unique(np.linspace(0, len(kept) - 1, _MOST_FRAMES).round().astype(int))]
     columns = {name: np.asarray(column, dtype=np.float64)[kept] for name, column in track.channels.items()}
+    slid = 0.0
+    off = isinstance(trial.field, StaticField) and trial.field.strength_T == 0.0
+    if off and {"x_m", "y_m"} <= {*columns}:
+        way = _way(columns)
+        if np.nanmax(way) > _SLID * length_m:
+            slid = float(np.nanmax(way))
+            kept = kept[: np.argmax(way > 0.5 * slid)]
+            columns = {name: column[: len(kept)] for name, column in columns.items()}
     angle = radians(sensor.angle_noise_deg)
     height = sensor.position_noise_m if sensor.z_noise_m is None else sensor.z_noise_m
     noise = {"x": sensor.position_noise_m, "y": sensor.position_noise_m, "z": height}
@@ -114,7 +133,15 @@ def _observed(dataset: Dataset, trial: LabTrial) -> Observed:
         orientation=orientation,
         noise=noise,
         frame_interval_s=track.frame_interval_s if len(found) > 1 else 0.0,
+        slid_m=slid,
         outcome=trial.outcome,
         frames=len(track.time_s),
         lost=int(len(found) - found.sum()),
     )
+
+
+def _way(columns: dict[str, Floats]) -> Floats:
+    """Return how far from its first place a robot is, m, shape (n,), NaN where lost."""
+    x, y = columns["x_m"], columns["y_m"]
+    seen = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
+    return np.hypot(x - x[seen[0]], y - y[seen[0]]) if len(seen) else np.zeros(len(x))

@@ -24,12 +24,13 @@ from ..scenario import Scenario
 from .observed import Observed
 from .pose import Path, body_axis, heading_of, relative_turn, tilt_of
 
-__all__ = ["Reader", "climbed", "seen_by"]
+__all__ = ["Reader", "reached", "seen_by"]
 
 Floats = NDArray[np.float64]
 
-# Share of the way without slip from which a slope counts as climbed, and how blurred that border is.
-_CLIMBED = 0.1
+# Share of the way without slip from which a slope counts as climbed, share of the way slid from which a model slides as
+# well, and how blurred these borders are.
+_CLIMBED, _SLIDES = 0.1, 0.3
 _BLUR = 0.05
 # A human who writes down the wrong outcome.
 _LAPSE = 0.01
@@ -122,10 +123,11 @@ class Reader:
     def outcome_kinds(self) -> tuple[str, ...]:
         """Names of `outcome_terms`."""
         outcome = self.observed.outcome
+        slides = ("slides",) if self.observed.slid_m > 0.0 else ()
         if outcome is None:
-            return ()
+            return slides
         noted = {"mean_speed": outcome.mean_speed_m_per_s, "tilt": outcome.tilt_deg, "climbs": outcome.climbs}
-        return tuple(name for name, value in noted.items() if value is not None)
+        return (*(name for name, value in noted.items() if value is not None), *slides)
 
     def outcome_terms(self, path: Path, camera: Floats) -> dict[str, float]:
         """Return the scaled differences of the trial's outcome: numbers whose squares count as -2 log likelihood.
@@ -139,8 +141,9 @@ class Reader:
         """
         outcome = self.observed.outcome
         terms: dict[str, float] = {}
+        slides = {"slides": reached(self._slid_share(path), True, _SLIDES)} if self.observed.slid_m > 0.0 else {}
         if outcome is None:
-            return terms
+            return slides
         said = self.read_outcomes(path)
         if outcome.mean_speed_m_per_s is not None and outcome.sigma_m_per_s is not None:
             speed = said["mean_speed_m_per_s"] * (1.0 + camera[1])
@@ -148,8 +151,13 @@ class Reader:
         if outcome.tilt_deg is not None and outcome.sigma_deg is not None:
             terms["tilt"] = (outcome.tilt_deg - said["tilt_deg"]) / outcome.sigma_deg
         if outcome.climbs is not None:
-            terms["climbs"] = climbed(said["climbed_share"], outcome.climbs)
-        return terms
+            terms["climbs"] = reached(said["climbed_share"], outcome.climbs)
+        return terms | slides
+
+    def _slid_share(self, path: Path) -> float:
+        """Return how far the model slides, as a share of how far the robot did."""
+        ends, _ = path.at(np.array([0.0, self.duration_s]))
+        return float(np.hypot(*(ends[1, :2] - ends[0, :2]))) / self.observed.slid_m
 
     def read_outcomes(self, path: Path) -> dict[str, float]:
         """Return what the model says of each kind of outcome: the share climbed, m/s, degrees."""
@@ -192,26 +200,28 @@ class Reader:
         return tables
 
 
-def climbed(share: float, climbs: bool) -> float:
-    """Return the scaled difference of a climbing outcome, `±√(-2 log P)`, with a smooth likelihood.
+def reached(share: float, does: bool, border: float = _CLIMBED) -> float:
+    """Return the scaled difference of an outcome of yes or no, `±√(-2 log P)`, with a smooth likelihood.
 
     ```text
-    P(climbs) = ε + (1 - 2ε) / (1 + exp(-(share - 0.1)/0.05))
+    P(it does) = ε + (1 - 2ε) / (1 + exp(-(share - border)/0.05))
     ```
 
     Parameters
     ----------
     share
-        Way over the way without slip.
-    climbs
-        What was seen.
+        Way over the way without slip, or over the way that was slid.
+    does
+        What was seen: whether the robot climbs, or slides.
+    border
+        From where on it does.
     """
-    odds = np.clip((share - _CLIMBED) / _BLUR, -60.0, 60.0)
+    odds = np.clip((share - border) / _BLUR, -60.0, 60.0)
     chance = _LAPSE + (1.0 - 2.0 * _LAPSE) / (1.0 + float(np.exp(-odds)))
-    chance = chance if climbs else 1.0 - chance
+    chance = chance if does else 1.0 - chance
     # A likely outcome counts as no difference at all.
     loss = -2.0 * log(chance / (1.0 - _LAPSE))
-    return (1.0 if climbs else -1.0) * float(np.sqrt(max(loss, 0.0)))
+    return (1.0 if does else -1.0) * float(np.sqrt(max(loss, 0.0)))
 
 
 def seen_by(path: Path, time_s: Floats, local: Floats, camera: Floats) -> tuple[Floats, Floats]:

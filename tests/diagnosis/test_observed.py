@@ -1,0 +1,61 @@
+"""What of a trial's track is compared."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from tumblers.dataset import Dataset, LabTrial, Track
+from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.observed import observe
+from tumblers.diagnosis.simulator import Job, Simulator
+from tumblers.effects.adhesion_coefficient import AdhesionCoefficient
+from tumblers.field import StaticField
+
+from .lab import plan
+
+HOLD = StaticField(strength_T=0.0, direction=(0.0, 1.0, 0.0))
+TIME_S = np.arange(30) / 60.0
+
+
+def seen(field: StaticField, way_m: float, acceleration_m_per_s2: float = 1.0) -> Dataset:
+    """A robot that slides down a slope of 50 degrees until it catches again."""
+    empty = plan([("hold", field, 50.0)], duration_s=0.5)
+    track = Track(
+        time_s=TIME_S,
+        channels={"x_m": np.zeros(30), "y_m": -np.minimum(0.5 * acceleration_m_per_s2 * TIME_S**2, way_m)},
+    )
+    trial = LabTrial(id="hold", field=field, duration_s=0.5, incline_deg=50.0, track=track)
+    return replace(empty, trials=(trial,))
+
+
+def test_of_a_robot_that_slides_without_a_field_half_of_its_way_is_compared_and_that_it_slides() -> None:
+    (observed,) = observe(seen(HOLD, 6e-4))
+    assert observed.slid_m == pytest.approx(6e-4)
+    assert_allclose(observed.time_s, TIME_S[0.5 * TIME_S**2 <= 3e-4])
+    assert observed.frames == 30
+    assert observed.lost == 0
+
+
+@pytest.mark.parametrize(("strength_T", "way_m"), [(0.003, 6e-4), (0.0, 1e-4)])
+def test_a_robot_that_holds_or_that_a_field_moves_is_compared_to_the_end(strength_T: float, way_m: float) -> None:
+    (observed,) = observe(seen(replace(HOLD, strength_T=strength_T), way_m))
+    assert observed.slid_m == 0.0
+    assert len(observed.time_s) == 30
+
+
+def test_a_model_that_slides_is_nearer_to_a_robot_that_does_than_one_that_holds() -> None:
+    dataset = seen(HOLD, 6e-4)
+    comparison = Comparison(dataset, Simulator(dataset, 1))
+    (reader,) = comparison.readers
+    assert reader.outcome_kinds == ("slides",)
+    held, slid = comparison.simulator.run([Job(0), Job(0, (AdhesionCoefficient(factor=0.0),))])
+    assert held is not None
+    assert slid is not None
+    still = np.zeros(2)
+    # One in a hundred writes down the wrong outcome.
+    assert reader.outcome_terms(held, still)["slides"] ** 2 == pytest.approx(-2.0 * np.log(0.01 / 0.99), rel=0.05)
+    assert reader.outcome_terms(slid, still)["slides"] == pytest.approx(0.0, abs=1e-6)
