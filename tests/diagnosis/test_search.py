@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from tumblers.diagnosis.beginnings import from_beginnings
+from tumblers.diagnosis.beginnings import from_beginnings, promise
 from tumblers.diagnosis.comparison import FAR, Comparison
 from tumblers.diagnosis.contender import of_fit, of_nominal
 from tumblers.diagnosis.fit import Fitter
@@ -16,11 +16,13 @@ from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.loss import robust_cost
 from tumblers.diagnosis.search import Search, _firsts
 from tumblers.diagnosis.simulator import STEPS_S, Job, Simulator
+from tumblers.diagnosis.thresholds import CLEAR
 from tumblers.effects.base import Effect
 from tumblers.effects.catalogue import CATALOGUE
 from tumblers.effects.contact_compliance import ContactCompliance
 from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.effects.magnetization_misalignment import MagnetizationMisalignment
+from tumblers.effects.magnetization_strength import MagnetizationStrength
 from tumblers.effects.surface_roughness import SurfaceRoughness
 from tumblers.field import StaticField
 
@@ -142,3 +144,21 @@ def test_the_wavelength_of_a_roughness_is_found_from_the_beginnings() -> None:
     assert isinstance(effect, SurfaceRoughness)
     assert effect.wavelength_m == pytest.approx(truth.wavelength_m, rel=0.02)
     assert_allclose(effect.sine_m, truth.sine_m, atol=5e-7)
+
+
+def test_an_effect_promises_something_where_it_is_not_yet_where_it_should_be() -> None:
+    truth = MagnetizationStrength(factor=0.7)
+    dataset = measure(plan(PLANS[:2]), (truth,))
+    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
+    (hypothesis,) = Search(fitter, [MagnetizationStrength], quiet, 0).possible
+    (there,) = (truth.vector()[0] - hypothesis.neutral) / hypothesis.scale
+    idle, right = (of_fit(fitter, fitter.fit(hypothesis, np.array([u]), evaluations=1)) for u in (0.0, there))
+    assert promise(fitter, idle, 0) > CLEAR
+    assert promise(fitter, right, 0) < 0.0
+
+
+@pytest.mark.parametrize("name", CATALOGUE)
+def test_neutral_is_neutral_to_the_last_bit_in_the_coordinates_of_a_fit(name: str) -> None:
+    hypothesis = Hypothesis.of(CATALOGUE[name], [Simulator(plan()).nominal(0)])
+    (effect,) = hypothesis.effects(np.zeros(len(hypothesis.neutral)))
+    assert effect.is_neutral()

@@ -12,13 +12,14 @@ from .contender import Contender, of_fit
 from .fit import Fitter
 from .hypothesis import Hypothesis
 
-__all__ = ["MANY", "from_beginnings"]
+__all__ = ["MANY", "from_beginnings", "promise"]
 
 Floats = NDArray[np.float64]
 
-# Points over the range that are tried (of one parameter, of more), and from the best of them fitted to these shares of
-# the trials' time one after another, in so many trial points, then to all of it.
-_ONE_PARAMETER_POINTS, _MORE_POINTS, _STAGES, _STAGE_POINTS, _LAST_POINTS = 8, 16, (0.25, 0.5), 4, 6
+# Points over the range that are tried (of one parameter, of more), every other one so much nearer to neutral, where
+# most causes are; from the best of them are fitted these shares of the trials' time one after another, in so many trial
+# points, then all of it.
+_ONE_PARAMETER_POINTS, _MORE_POINTS, _NEARER, _STAGES, _STAGE_POINTS, _LAST_POINTS = 8, 16, 0.15, (0.25, 0.5), 4, 6
 # Of more parameters than this, points over the range tell nothing: from all close starts, then from the best so
 # many, these shares are fitted.
 MANY, _FOLLOWED = 4, ((0.1, None), (0.25, 4), (0.5, 2))
@@ -38,7 +39,7 @@ def from_beginnings(fitter: Fitter, contender: Contender, possible: Sequence[Hyp
     seed
         Of the points over the range.
     """
-    tracked = tuple(i for i in fitter.trials if len(fitter.comparison.readers[i].observed.time_s))
+    tracked = _tracked(fitter)
     if not tracked:
         return contender
     assert contender.fit is not None
@@ -47,21 +48,52 @@ def from_beginnings(fitter: Fitter, contender: Contender, possible: Sequence[Hyp
     point = (
         _followed(fitter, contender, possible, tracked)
         if len(contender.point) > MANY
-        else _sampled(fitter, hypothesis, seed, tracked)
+        else _staged(fitter, hypothesis, _sampled(fitter, hypothesis, seed, tracked)[1], tracked)
     )
     fit = fitter.fit(hypothesis, point, evaluations=_LAST_POINTS)
     return of_fit(fitter, min(fitter.again(contender.fit), fit, key=lambda fit: fit.cost))
 
 
-def _sampled(fitter: Fitter, hypothesis: Hypothesis, seed: int, tracked: tuple[int, ...]) -> Floats:
-    """Return the point that is best for the beginnings, of many over the range, fitted to more and more of them."""
+def promise(fitter: Fitter, contender: Contender, seed: int) -> float:
+    """Return how much better than a contender the best point over its range follows the beginnings of the trials.
+
+    Parameters
+    ----------
+    fitter
+        Of the dataset.
+    contender
+        One effect of few parameters.
+    seed
+        Of the points over the range.
+    """
+    tracked = _tracked(fitter)
+    if not tracked:
+        return 0.0
+    assert contender.fit is not None
+    hypothesis = contender.fit.hypothesis
+    here = fitter.residuals(hypothesis, [contender.point], tracked, _STAGES[0])[0]
+    return fitter.cost(here, contender.point, tracked) - _sampled(fitter, hypothesis, seed, tracked)[0]
+
+
+def _tracked(fitter: Fitter) -> tuple[int, ...]:
+    return tuple(i for i in fitter.trials if len(fitter.comparison.readers[i].observed.time_s))
+
+
+def _sampled(fitter: Fitter, hypothesis: Hypothesis, seed: int, tracked: tuple[int, ...]) -> tuple[float, Floats]:
+    """Return the objective over the beginnings at the best of many points over the range, and that point."""
     free = hypothesis.high > hypothesis.low
     points = _ONE_PARAMETER_POINTS if free.sum() < 2 else _MORE_POINTS
     shares = qmc.Sobol(len(free), rng=np.random.default_rng(seed)).random(points)
     tried: list[Floats] = [hypothesis.low + share * (hypothesis.high - hypothesis.low) for share in shares]
+    tried[1::2] = [_NEARER * point for point in tried[1::2]]
     residuals = fitter.residuals(hypothesis, tried, tracked, _STAGES[0])
     costs = [fitter.cost(residual, point, tracked) for residual, point in zip(residuals, tried, strict=True)]
-    point = tried[int(np.argmin(costs))]
+    best = int(np.argmin(costs))
+    return costs[best], tried[best]
+
+
+def _staged(fitter: Fitter, hypothesis: Hypothesis, point: Floats, tracked: tuple[int, ...]) -> Floats:
+    """Return where a fit to more and more of the trials' time leads from a point."""
     for stage in _STAGES:
         point = fitter.fit(hypothesis, point, tracked, _STAGE_POINTS, stage).point
     return point

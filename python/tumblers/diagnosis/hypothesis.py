@@ -109,4 +109,5 @@ class Hypothesis:
         values: list[float] = []
         for kind in self.kinds:
             values += kind.from_fit(coordinates[len(values) : len(values) + len(kind.parameters)])
-        return np.array(values)
+        # Rounding may carry the end of a range beyond what is possible.
+        return np.clip(values, self.ranges[:, 0], self.ranges[:, 1])

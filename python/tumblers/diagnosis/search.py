@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ..effects.base import Effect
 from ..progress import OnPhase
-from .beginnings import MANY, from_beginnings
+from .beginnings import MANY, from_beginnings, promise
 from .contender import Contender, of_fit, of_nominal
 from .fit import Fit, Fitter
 from .hypothesis import Hypothesis
@@ -42,8 +42,9 @@ _SETTLED, _ROUNDS, _ENOUGH = 2, 2, 5.0
 _NEAR, _MOST_NEAR = 300.0, 6
 # A gap is left where the mean square stays above this against the likeliest noise.
 _WANTING = 1.1
-# Hypotheses that are fitted again from the beginnings of the trials.
-_REFINED = 2
+# Hypotheses that are fitted again from the beginnings of the trials; and of those whose points over the range follow
+# the beginnings better than their fit does.
+_REFINED, _PROMISING = 2, 4
 # Effects to which a second is added, the farther ones only where the best leaves a gap, and they leave no more than so
 # much of its objective beyond it; seconds that are fitted with each; singles that are joined two and two, and joints
 # that are fitted.
@@ -110,10 +111,16 @@ class Search:
     def _far(self, singles: Sequence[Contender]) -> list[Contender]:
         """Search far away for the best, and where they leave a gap for those that no local fit can be trusted with."""
         made = self._refined(singles, _REFINED)
+        refined = {contender.names for contender in singles[:_REFINED]}
         if self._is_wanting(made[0]):
+            self.tell("points over the whole range", _REFINED, _REFINED)
+            self.fitter.take_likeliest_noise(made[0].effects)
+            few = [k for k, c in enumerate(made) if len(c.point) <= MANY and c.names not in refined]
+            promises = {k: promise(self.fitter, made[k], self.seed) for k in few}
+            promising = sorted(few, key=lambda k: -promises[k])[:_PROMISING]
             for k, contender in enumerate(made):
-                if len(contender.point) > MANY and contender.names != singles[0].names:
-                    self.tell("points over the whole range", _REFINED, _REFINED)
+                many = len(contender.point) > MANY and contender.names != singles[0].names
+                if many or (k in promising and promises[k] > CLEAR):
                     made[k] = from_beginnings(self.fitter, contender, self.possible, self.seed)
         return sorted(made, key=_total)
 

@@ -33,7 +33,14 @@ class AdhesionCoefficient(Effect):
     name: ClassVar[str] = "adhesion_coefficient"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(
-            key="factor", neutral=1.0, low=0.0, high=8.0, unit="1", meaning="adhesion over the nominal one", least=0.0
+            key="factor",
+            neutral=1.0,
+            low=0.0,
+            high=8.0,
+            unit="1",
+            meaning="adhesion over the nominal one",
+            least=0.0,
+            fine=0.05,
         ),
     )
     factor: float = 1.0

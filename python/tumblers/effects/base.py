@@ -131,13 +131,14 @@ class Effect(ABC):
         """
         neutral = tuple(p.neutral for p in cls.parameters)
         points = []
-        for i, (low, high) in enumerate(cls.ranges(scenario)):
+        for i, (p, (low, high)) in enumerate(zip(cls.parameters, cls.ranges(scenario), strict=True)):
             # A third of the way to either end, and two thirds as well where there is one end only.
             ends = [end for end in (low, high) if end != neutral[i]]
             shares = (1.0 / 3.0,) if len(ends) == 2 else (1.0 / 3.0, 2.0 / 3.0)
+            here = p.to_fit(neutral[i])
             for end in ends:
                 for share in shares:
-                    value = neutral[i] + share * (end - neutral[i])
+                    value = p.from_fit(here + share * (p.to_fit(end) - here))
                     points.append((*neutral[:i], value, *neutral[i + 1 :]))
         return tuple(points)
 
@@ -154,14 +155,14 @@ class Effect(ABC):
 
     @classmethod
     def to_fit(cls, values: Sequence[float]) -> tuple[float, ...]:
-        """Return the coordinates in which a fit moves: the parameters, unless these turn in a circle.
+        """Return the coordinates in which a fit moves: each parameter's own, unless some turn in a circle.
 
         Parameters
         ----------
         values
             Of the parameters, in their order.
         """
-        return tuple(values)
+        return tuple(p.to_fit(value) for p, value in zip(cls.parameters, values, strict=True))
 
     @classmethod
     def from_fit(cls, coordinates: Sequence[float]) -> tuple[float, ...]:
@@ -172,7 +173,7 @@ class Effect(ABC):
         coordinates
             As many as there are parameters.
         """
-        return tuple(coordinates)
+        return tuple(p.from_fit(coordinate) for p, coordinate in zip(cls.parameters, coordinates, strict=True))
 
     @classmethod
     def fit_ranges(cls, scenario: Scenario) -> tuple[tuple[float, float], ...]:
@@ -183,7 +184,8 @@ class Effect(ABC):
         scenario
             The nominal scenario.
         """
-        return cls.ranges(scenario)
+        ranges = cls.ranges(scenario)
+        return tuple((p.to_fit(low), p.to_fit(high)) for p, (low, high) in zip(cls.parameters, ranges, strict=True))
 
     @classmethod
     def from_vector(cls, values: Sequence[float]) -> Self:

@@ -41,6 +41,7 @@ class ContactCompliance(Effect):
             unit="m/N",
             meaning="yield per normal force",
             least=0.0,
+            fine=0.02,
         ),
     )
     # A body of 40 µg on 1 m/N bounces within a millisecond.
@@ -49,14 +50,14 @@ class ContactCompliance(Effect):
 
     @classmethod
     def starts(cls, scenario: Scenario) -> tuple[tuple[float, ...], ...]:  # noqa: ARG003
-        """Return a stiff and a soft contact.
+        """Return compliances that are apart by factors of ten.
 
         Parameters
         ----------
         scenario
             The nominal scenario.
         """
-        return ((1.0,), (8.0,))
+        return ((0.03,), (0.3,), (3.0,))
 
     def act(self, scenario: Scenario) -> Scenario:
         """Return the scenario with its substrate made softer.

@@ -46,6 +46,7 @@ class DraftAngle(Effect):
             unit="degrees",
             meaning="added draft of the sides",
             least=0.0,
+            fine=0.1,
         ),
     )
     draft_deg: float = 0.0

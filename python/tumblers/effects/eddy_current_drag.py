@@ -45,20 +45,21 @@ class EddyCurrentDrag(Effect):
             unit="S",
             meaning="conductivity times thickness added to the sheet",
             least=0.0,
+            fine=3e5,
         ),
     )
     sheet_conductance_S: float = 0.0
 
     @classmethod
     def starts(cls, scenario: Scenario) -> tuple[tuple[float, ...], ...]:  # noqa: ARG003
-        """Return conductances that are apart by factors of eight.
+        """Return conductances that are apart by factors of ten.
 
         Parameters
         ----------
         scenario
             The nominal scenario.
         """
-        return ((1e6,), (8e6,), (6.4e7,))
+        return ((3e5,), (3e6,), (3e7,))
 
     def act(self, scenario: Scenario) -> Scenario:
         """Return the scenario with a conducting sheet under its robot.

@@ -42,6 +42,7 @@ class LineContactAdhesion(Effect):
             unit="m",
             meaning="width of the strip that holds on",
             least=0.0,
+            fine=1e-6,
         ),
     )
     width_m: float = 0.0
@@ -59,14 +60,14 @@ class LineContactAdhesion(Effect):
 
     @classmethod
     def starts(cls, scenario: Scenario) -> tuple[tuple[float, ...], ...]:
-        """Return the strips between which the paper's climb lies, and none where nothing adheres.
+        """Return the strips between which the paper's climb lies and a narrow one, and none where nothing adheres.
 
         Parameters
         ----------
         scenario
             The nominal scenario.
         """
-        return ((3e-6,), (9e-6,)) if scenario.substrate.adhesion_N_per_m2 > 0.0 else ()
+        return ((1e-6,), (3e-6,), (9e-6,)) if scenario.substrate.adhesion_N_per_m2 > 0.0 else ()
 
     def act(self, scenario: Scenario) -> Scenario:
         """Return the scenario with its strip of contact widened.

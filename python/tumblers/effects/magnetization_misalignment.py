@@ -64,14 +64,15 @@ class MagnetizationMisalignment(Effect):
 
     @classmethod
     def starts(cls, scenario: Scenario) -> tuple[tuple[float, ...], ...]:  # noqa: ARG003
-        """Return errors of 8° to each side, and of 15° up and to a side.
+        """Return errors of 8° to each side, and of 2° and 15° up and to a side.
 
         Parameters
         ----------
         scenario
             The nominal scenario.
         """
-        return ((8.0, 0.0), (8.0, 90.0), (8.0, 180.0), (8.0, -90.0), (15.0, 0.0), (15.0, 90.0))
+        eights = ((8.0, 0.0), (8.0, 90.0), (8.0, 180.0), (8.0, -90.0))
+        return ((2.0, 0.0), (2.0, 90.0), *eights, (15.0, 0.0), (15.0, 90.0))
 
     @classmethod
     def to_fit(cls, values: Sequence[float]) -> tuple[float, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import asinh, sinh
 
 __all__ = ["Parameter"]
 
@@ -27,6 +28,8 @@ class Parameter:
         Bounds beyond which a value is refused, where there are any.
     turns
         Whether it is an angle in degrees that comes back to itself after 360.
+    fine
+        Where the range spans decades: the size c from which on a fit moves in its logarithm, by asinh(c / fine).
     """
 
     key: str
@@ -38,8 +41,32 @@ class Parameter:
     least: float | None = None
     above: float | None = None
     turns: bool = False
+    fine: float | None = None
 
     @property
     def field(self) -> str:
         """Name of the effect's field that holds the number."""
         return self.key.partition("[")[0]
+
+    def to_fit(self, value: float) -> float:
+        """Return the coordinate in which a fit moves.
+
+        Parameters
+        ----------
+        value
+            Of the parameter.
+        """
+        return value if self.fine is None else asinh(value / self.fine)
+
+    def from_fit(self, coordinate: float) -> float:
+        """Return the parameter's value.
+
+        Parameters
+        ----------
+        coordinate
+            In which a fit moves.
+        """
+        if self.fine is None:
+            return coordinate
+        # Neutral has to stay neutral to the last bit.
+        return self.neutral if coordinate == self.to_fit(self.neutral) else self.fine * sinh(coordinate)

@@ -43,20 +43,21 @@ class ViscousDrag(Effect):
             unit="Pa s",
             meaning="viscosity of the fluid around the robot",
             least=0.0,
+            fine=2e-4,
         ),
     )
     viscosity_Pa_s: float = 0.0
 
     @classmethod
     def starts(cls, scenario: Scenario) -> tuple[tuple[float, ...], ...]:  # noqa: ARG003
-        """Return half the viscosity of water, and two that are each four times more.
+        """Return the viscosity of water, and ten times less and more.
 
         Parameters
         ----------
         scenario
             The nominal scenario.
         """
-        return ((5e-4,), (2e-3,), (8e-3,))
+        return ((1e-4,), (1e-3,), (1e-2,))
 
     def act(self, scenario: Scenario) -> Scenario:
         """Return the scenario with a fluid around its robot.
