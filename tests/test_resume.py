@@ -96,12 +96,71 @@ def test_a_part_that_is_none_is_refused_by_its_name(tmp_path: Path, spoil: str) 
         run(folder)
 
 
-def test_a_folder_that_was_made_and_no_more_is_taken(tmp_path: Path) -> None:
-    folder = tmp_path / "parts"
-    folder.mkdir()
-    (folder / ".settings.json.0.tmp").write_text("half")
-    Parts(folder, {"a": 1})
-    assert [file.name for file in folder.iterdir()] == ["settings.json"]
+def tumble(*arguments: str, cwd: Path, limit: int | None = None) -> subprocess.CompletedProcess[str]:
+    """Run a command whose every draft is a part, with files of at most so many bytes."""
+
+    def small_disk() -> None:
+        import resource
+
+        assert limit is not None
+        resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+    return subprocess.run(
+        [sys.executable, "-c", COMMAND, *arguments],
+        capture_output=True,
+        text=True,
+        cwd=cwd,
+        check=False,
+        env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"},
+        preexec_fn=None if limit is None else small_disk,
+    )
+
+
+def files_of(folder: Path) -> dict[str, bytes]:
+    return {str(file.relative_to(folder)): file.read_bytes() for file in folder.rglob("*") if file.is_file()}
+
+
+@pytest.mark.parametrize("drafts", ["0", "0:7"])
+@pytest.mark.parametrize("held", ["someone's", "another sweep's"])
+def test_a_sweep_leaves_a_folder_that_is_not_its_own_as_it_is(tmp_path: Path, drafts: str, held: str) -> None:
+    """Whether it is so short that it keeps nothing, or long."""
+    parts = tmp_path / "out.nc.parts"
+    if held == "someone's":
+        (parts / "thesis").mkdir(parents=True)
+        (parts / "thesis" / "chapter.tex").write_text("three years")
+        words = "--out: found no such file at out.nc.parts/settings.json, expected a folder of these results, or none"
+    else:
+        kept = Parts(parts, module.sweep_settings(preset_scenario("spiked_ends"), DRAFTS, CASES))
+        kept.part("drafts-00000", lambda: [1.0], bool)
+        words = "--out: found drafts_deg [0.0, 1.0, 2.0, 3.0, 4.0, 5.0] in out.nc.parts, expected drafts_deg [0.0"
+    before = files_of(tmp_path)
+    done = tumble("sweep", "--robot", "spiked", "--drafts", drafts, "--theta1", "0", "--out", "out.nc", cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith(f"tumblers: {words}")
+    assert done.stderr.count("\n") == 1
+    assert files_of(tmp_path) == before
+
+
+@pytest.mark.skipif(os.name == "nt", reason="limits")
+def test_a_full_disk_gets_one_line_and_the_parts_stay(tmp_path: Path) -> None:
+    arguments = ("sweep", "--robot", "spiked", "--drafts", "0:3", "--theta1", "0", "--out", "out.nc")
+    done = tumble(*arguments, cwd=tmp_path, limit=1024)
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr.startswith("tumblers: [Errno 27] File too large")
+    assert done.stderr.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+    parts = tmp_path / "out.nc.parts"
+    whole = tumble(*arguments, cwd=tmp_path)
+    assert whole.returncode == 0, whole.stderr
+    written = (tmp_path / "out.nc").read_bytes()
+    (tmp_path / "out.nc").unlink()
+    # The whole is larger than its parts are.
+    done = tumble(*arguments, cwd=tmp_path, limit=len(written) - 1)
+    assert done.returncode == 1, done.stderr
+    assert done.stderr.startswith("tumblers: [Errno 27] File too large")
+    assert len(list(parts.glob("*.nc"))) == 4
+    assert tumble(*arguments, cwd=tmp_path).returncode == 0
+    assert {file.name for file in tmp_path.iterdir()} == {"out.nc"}
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals")

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
 from uuid import uuid4
 
-__all__ = ["write_files"]
+__all__ = ["is_unfinished", "write_files"]
+
+_UNFINISHED = re.compile(r"\..+\.[0-9a-f]{32}\.tmp")
 
 
 def write_files(contents: Mapping[Path, bytes | memoryview]) -> None:
@@ -31,3 +34,14 @@ def write_files(contents: Mapping[Path, bytes | memoryview]) -> None:
             temporary.write_bytes(contents[path])
         for path, temporary in temporaries.items():
             os.replace(temporary, path)
+
+
+def is_unfinished(path: Path) -> bool:
+    """Return whether a file is what `write_files` left of one when it was killed.
+
+    Parameters
+    ----------
+    path
+        The file.
+    """
+    return _UNFINISHED.fullmatch(path.name) is not None

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from shutil import rmtree
 from time import perf_counter
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -28,12 +27,13 @@ from .options import (
     numbers,
     output_file,
 )
-from .parts import resumable
+from .parts import Parts, parts_beside
 from .presets import DRIVES, EXPERIMENTS, ROBOTS, SUBSTRATES, preset_scenario
 from .reproduce_command import reproduce
 from .scenario import Scenario
 from .section import as_section, write_section
 from .studies.commands import climb, convergence, design, tolerance
+from .studies.options import as_options
 from .version import __version__
 from .view_command import AnimateOption, CycleOption, Pictures, SnapshotsOption, ViewOption, view
 
@@ -178,22 +178,25 @@ def sweep(
         scenario = preset_scenario(robot=robot, substrate="aluminium_pdms", drive="20mT_1Hz")
     from .summary import sweep_summary, sweep_warnings
     from .sweep import sweep as run_sweep
+    from .sweep import sweep_settings
 
     start = perf_counter()
-    parts = out.with_name(f"{out.name}.parts")
-    with resumable(parts):
-        result = run_sweep(
-            scenario, drafts_deg=drafts_deg, magnetization=cases, parts=parts, threads=jobs, progress=True
-        )
-    seconds = perf_counter() - start
-    errors = result["error"].values.ravel()
-    if all(errors):
-        # A refusal says what was found; anything else failed on the way.
-        refused = all(": found " in error for error in errors)
-        raise (TumblersError if refused else SimulationError)(f"no case could be run, the first: {errors[0]}")
-    _write(result, out, plot)
-    if parts.exists():
-        rmtree(parts)
+    parts = parts_beside(out)
+    with as_options():
+        kept = Parts(parts, sweep_settings(scenario, drafts_deg, cases))
+        with kept.resumable():
+            result = run_sweep(
+                scenario, drafts_deg=drafts_deg, magnetization=cases, parts=parts, threads=jobs, progress=True
+            )
+            seconds = perf_counter() - start
+            errors = result["error"].values.ravel()
+            if all(errors):
+                kept.discard()
+                # A refusal says what was found; anything else failed on the way.
+                refused = all(": found " in error for error in errors)
+                raise (TumblersError if refused else SimulationError)(f"no case could be run, the first: {errors[0]}")
+            _write(result, out, plot)
+    kept.discard()
     typer.echo(sweep_summary(result, seconds))
     _warn(sweep_warnings(result, scenario.run.steps))
 

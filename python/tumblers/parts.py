@@ -5,20 +5,23 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from functools import partial
 from pathlib import Path
-from shutil import rmtree
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from .atomic import write_files
+from .atomic import is_unfinished, write_files
 from .errors import InputError, unreadable
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Parts", "numbers_of", "other_setting", "resumable"]
+__all__ = ["Parts", "numbers_of", "parts_beside", "same_settings"]
 
-_SETTINGS = "settings.json"
+T = TypeVar("T")
+
+_SETTINGS, _SUFFIXES = "settings.json", (".json", ".nc")
+_FOLDER = "a folder of these results, or none"
 _EXPECTED = "a part of these results, or no such file: it is computed again"
 
 
@@ -28,7 +31,7 @@ class Parts:
     Parameters
     ----------
     folder
-        The folder, made if it is missing; None keeps nothing.
+        The folder, made with the first part; None keeps nothing.
     settings
         What the results depend on, as JSON has it.
 
@@ -36,27 +39,42 @@ class Parts:
     ------
     InputError
         A folder of other settings, or one that is not of parts.
-    OSError
-        The folder cannot be written to.
     """
 
     def __init__(self, folder: Path | None, settings: Mapping[str, Any]) -> None:
-        self.folder = folder
-        if folder is None:
-            return
-        file = folder / _SETTINGS
-        # What a killed write left behind is no part; and one that was killed before its first file has no settings.
-        for left in folder.glob(".*.tmp") if folder.exists() else ():
-            left.unlink()
-        if folder.exists() and any(folder.iterdir()):
-            kept = _held(file, lambda held: isinstance(held, Mapping), "a folder of these results, or none")
-            other = other_setting(kept, settings)
-            if other is not None:
-                found, expected = other
-                raise InputError("parts", f"{found} in {folder}", f"{expected}, or another file")
-            return
-        folder.mkdir(exist_ok=True)
-        write_files({file: json.dumps(settings, indent=1).encode()})
+        self.folder, self.settings = folder, settings
+        self._begun()
+
+    def _begun(self) -> bool:
+        """Return whether the folder holds parts of these results, and refuse one that holds anything else."""
+        if self.folder is None or not self.folder.exists():
+            return False
+        if not self.folder.is_dir():
+            raise InputError("parts", f"the file {self.folder}", _FOLDER)
+        file = self.folder / _SETTINGS
+        # A folder that was made by a call that was killed before its first file is as good as none.
+        if not file.exists() and all(entry.name.startswith(".") for entry in self.folder.iterdir()):
+            return False
+        same_settings(_json(file, _FOLDER), self.settings, self.folder)
+        return True
+
+    def _begin(self) -> None:
+        assert self.folder is not None
+        self.folder.mkdir(exist_ok=True)
+        try:
+            write_files({self.folder / _SETTINGS: _json_bytes(self.settings)})
+        except BaseException:
+            with suppress(OSError):
+                self.folder.rmdir()
+            raise
+
+    def _files(self) -> list[Path]:
+        """Return the parts that the folder holds."""
+        if not self._begun():
+            return []
+        assert self.folder is not None
+        kept = (entry for entry in self.folder.iterdir() if entry.suffix in _SUFFIXES and entry.name[0] != ".")
+        return [entry for entry in kept if entry.name != _SETTINGS]
 
     def part(self, name: str, compute: Callable[[], Any], fits: Callable[[Any], bool]) -> Any:
         """Return a part: from its file, or computed and then kept.
@@ -74,15 +92,10 @@ class Parts:
         ------
         InputError
             A file that holds something else.
+        OSError
+            The folder cannot be written to, or the disk is full.
         """
-        if self.folder is None:
-            return compute()
-        file = self.folder / f"{name}.json"
-        if file.exists():
-            return _held(file, fits, _EXPECTED)
-        result = compute()
-        write_files({file: json.dumps(result).encode()})
-        return result
+        return self._kept(f"{name}.json", compute, fits, partial(_json, expected=_EXPECTED), _json_bytes)
 
     def dataset(self, name: str, compute: Callable[[], xr.Dataset], fits: Callable[[xr.Dataset], bool]) -> xr.Dataset:
         """Return a part that is a Dataset: from its netCDF file, or computed and then kept.
@@ -96,48 +109,78 @@ class Parts:
         ------
         InputError
             A file that holds something else.
+        OSError
+            The folder cannot be written to, or the disk is full.
         """
+        return self._kept(f"{name}.nc", compute, fits, _netcdf, _netcdf_bytes)
+
+    def _kept(
+        self,
+        name: str,
+        compute: Callable[[], T],
+        fits: Callable[[T], bool],
+        read: Callable[[Path], T],
+        written: Callable[[T], bytes | memoryview],
+    ) -> T:
         if self.folder is None:
             return compute()
-        import xarray as xr
-
-        from .netcdf import save_netcdf
-
-        file = self.folder / f"{name}.nc"
-        if file.exists():
-            try:
-                with xr.open_dataset(file, engine="h5netcdf") as opened:
-                    held = opened.load()
-            except (OSError, ValueError, KeyError):
-                raise InputError("parts", f"no netCDF in {file}", _EXPECTED) from None
+        file = self.folder / name
+        # Looked at each time: another process may have finished these results meanwhile, or begun other ones.
+        if self._begun() and file.exists():
+            held = read(file)
             if not fits(held):
                 raise InputError("parts", f"something else in {file}", _EXPECTED)
             return held
         result = compute()
-        save_netcdf(result, file)
+        if not self._begun():
+            self._begin()
+        write_files({file: written(result)})
         return result
 
+    @contextmanager
+    def resumable(self) -> Iterator[None]:
+        """Say on Ctrl-C that what was done is kept, where anything was; where nothing was, nothing is left."""
+        try:
+            yield
+        except BaseException as stopped:
+            done = 0
+            # Of other results that were begun there meanwhile, nothing is said.
+            with suppress(InputError):
+                done = len(self._files())
+            if not done:
+                self.discard()
+            if not done or not isinstance(stopped, KeyboardInterrupt):
+                raise
+            sys.stderr.write(
+                f"tumblers: interrupted, {done} parts kept in {self.folder}: the same command goes on from there\n"
+            )
+            raise SystemExit(130) from None
 
-@contextmanager
-def resumable(folder: Path) -> Iterator[None]:
-    """Say on Ctrl-C that what was done is kept; where nothing was, the folder goes, too.
+    def discard(self) -> None:
+        """Remove the parts, once the whole is written, and their folder; what is not of these results stays."""
+        # Who began other results there meanwhile keeps them.
+        with suppress(InputError):
+            if self.folder is None or not self._begun():
+                return
+            left = [entry for entry in self.folder.iterdir() if is_unfinished(entry)]
+            # The settings come last: what is left without them would be refused.
+            for file in [*left, *self._files(), self.folder / _SETTINGS]:
+                file.unlink(missing_ok=True)
+            with suppress(OSError):
+                self.folder.rmdir()
+
+
+def parts_beside(out: Path) -> Path:
+    """Return the folder for the parts of a command's result.
 
     Parameters
     ----------
-    folder
-        The folder of `Parts`.
+    out
+        The file or the folder that the result goes to.
     """
-    try:
-        yield
-    except KeyboardInterrupt:
-        names = [file.name for file in folder.iterdir()] if folder.exists() else []
-        done = sum(name != _SETTINGS and not name.startswith(".") for name in names)
-        if not done:
-            if _SETTINGS in names:
-                rmtree(folder)
-            raise
-        sys.stderr.write(f"tumblers: interrupted, {done} parts kept in {folder}: the same command goes on from there\n")
-        raise SystemExit(130) from None
+    # Of `.` and of `..` the name has to be found.
+    whole = out if out.name not in ("", "..") else out.resolve()
+    return whole.parent / f"{whole.name}.parts"
 
 
 def numbers_of(count: int, value: object) -> bool:
@@ -155,35 +198,60 @@ def numbers_of(count: int, value: object) -> bool:
     )
 
 
-def _held(file: Path, fits: Callable[[Any], bool], expected: str) -> Any:
+def _json(file: Path, expected: str) -> Any:
     try:
-        held = json.loads(file.read_text(encoding="utf-8"))
-    except json.JSONDecodeError:
+        return json.loads(file.read_text(encoding="utf-8"))
+    except (json.JSONDecodeError, RecursionError):
         raise InputError("parts", f"text that is no JSON in {file}", expected) from None
     except (OSError, ValueError) as error:
         raise InputError("parts", f"{unreadable(error)} at {file}", expected) from None
-    if not fits(held):
-        raise InputError("parts", f"something else in {file}", expected)
-    return held
 
 
-def other_setting(kept: object, settings: Mapping[str, Any]) -> tuple[str, str] | None:
-    """Return the first setting that differs, as it was kept and as it is; None if all are the same.
+def _json_bytes(value: Any) -> bytes:
+    return json.dumps(value, indent=1).encode()
+
+
+def _netcdf(file: Path) -> xr.Dataset:
+    import xarray as xr
+
+    try:
+        with xr.open_dataset(file, engine="h5netcdf") as opened:
+            return opened.load()
+    except (OSError, ValueError, KeyError):
+        raise InputError("parts", f"no netCDF in {file}", _EXPECTED) from None
+
+
+def _netcdf_bytes(dataset: xr.Dataset) -> memoryview:
+    from .netcdf import netcdf_bytes
+
+    return netcdf_bytes(dataset)
+
+
+def same_settings(kept: object, settings: Mapping[str, Any], where: Path) -> None:
+    """Refuse results of other settings.
 
     Parameters
     ----------
     kept, settings
         Settings of the results that are there, and those wanted.
+    where
+        Where they are.
+
+    Raises
+    ------
+    InputError
+        For the key ``parts``: the first setting that differs.
     """
     if not isinstance(kept, Mapping):
-        return "no settings", "those of these results"
+        raise InputError("parts", f"no settings in {where}", "those of these results, or another file")
     for key in dict.fromkeys([*settings, *kept]):
-        if kept.get(key) != settings.get(key):
-            words = [_short(key, table.get(key)) for table in (kept, settings)]
-            if words[0] == words[1]:
-                words = [f"another {key}", f"this {key}"]
-            return words[0], words[1]
-    return None
+        pair = kept.get(key), settings.get(key)
+        # As text, a NaN is the same as another.
+        if pair[0] != pair[1] and json.dumps(pair[0]) != json.dumps(pair[1]):
+            found, expected = (_short(key, value) for value in pair)
+            if found == expected:
+                found, expected = f"another {key}", f"this {key}"
+            raise InputError("parts", f"{found} in {where}", f"{expected}, or another file")
 
 
 def _short(key: str, value: object) -> str:

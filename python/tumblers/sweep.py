@@ -107,8 +107,9 @@ def sweep(
         thread_count("threads", threads)
     rows = max(1, round(_PART_STEPS / (len(cases) * scenario.run.steps)))
     firsts = range(0, len(drafts), rows)
-    folder = None if parts is None or len(firsts) == 1 else Path(parts)
-    kept = Parts(folder, sweep_settings(scenario, drafts, cases))
+    kept = Parts(None if parts is None else Path(parts), sweep_settings(scenario, drafts, cases))
+    if len(firsts) == 1:
+        kept = Parts(None, kept.settings)
     found = []
     with native_call("cases", len(drafts) * len(cases), progress) as on_progress:
         for first in firsts:

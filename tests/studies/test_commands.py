@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import json
 import os
 import re
 import signal
@@ -13,6 +14,7 @@ import xarray as xr
 
 import tumblers
 from tumblers import Scenario, drive, preset_scenario
+from tumblers.parts import Parts
 from tumblers.studies.robust import Errors
 
 COMMAND = [sys.executable, "-m", "tumblers"]
@@ -147,6 +149,34 @@ def test_a_design_that_is_there_is_shown_again_and_another_one_refused(tmp_path:
     assert (other.returncode, other.stdout) == (2, "")
     assert "--out: found errors_seed 0 in out.nc, expected errors_seed 1, or another file" in other.stderr
     assert (tmp_path / "out.nc").stat().st_mtime_ns >= written
+
+
+@pytest.mark.parametrize("finished", [False, True])
+def test_a_design_leaves_a_folder_that_is_not_its_own_as_it_is(tmp_path: Path, finished: bool) -> None:
+    """Even where the design is there already, and there is nothing more to keep."""
+    if finished:
+        assert tumble(*DESIGN, "--out", "out.nc", cwd=tmp_path).returncode == 0
+    parts = tmp_path / "out.nc.parts"
+    parts.mkdir()
+    (parts / "chapter.tex").write_text("three years")
+    before = {file: file.read_bytes() for file in tmp_path.rglob("*") if file.is_file()}
+    done = tumble(*DESIGN, "--out", "out.nc", cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == (
+        "tumblers: --out: found no such file at out.nc.parts/settings.json, "
+        "expected a folder of these results, or none\n"
+    )
+    assert {file: file.read_bytes() for file in tmp_path.rglob("*") if file.is_file()} == before
+
+
+def test_parts_of_a_design_that_is_there_are_cleared_up(tmp_path: Path) -> None:
+    """As a kill leaves them between the whole and the parts' end."""
+    assert tumble(*DESIGN, "--out", "out.nc", cwd=tmp_path).returncode == 0
+    with xr.open_dataset(tmp_path / "out.nc", engine="h5netcdf") as result:
+        settings = json.loads(result.attrs["settings"])
+    Parts(tmp_path / "out.nc.parts", settings).part("candidates", lambda: 1, bool)
+    assert tumble(*DESIGN, "--out", "out.nc", cwd=tmp_path).returncode == 0
+    assert {file.name for file in tmp_path.iterdir()} == {"out.nc", "spiked.toml"}
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals")

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from shutil import rmtree
 from typing import Annotated, Any, get_args
 
 import typer
 
 from ..check import choice, number
 from ..options import as_option, numbers
-from ..parts import resumable
+from ..parts import Parts, parts_beside
 from ..robot import DraftModel
 from .defaults import (
     AXIS_SIGMA_DEG,
@@ -178,29 +177,31 @@ def design(
     from .robust import Errors
     from .words import design_words
 
-    parts = out.with_name(f"{out.name}.parts")
-    with as_options(), resumable(parts):
+    parts = parts_beside(out)
+    with as_options():
         errors = Errors(draft_most_deg=draft_most, axis_sigma_deg=axis_sigma, draws=draws, seed=seed)
-        settings: dict[str, Any] = {
+        given: dict[str, Any] = {
             "samples": samples,
             "generations": generations,
             "errors": errors,
             "drift_cost": drift_cost,
             "seed": seed,
         }
-        finished = finished_design(out, design_settings(scenario, **settings))
-        finish(
-            lambda: (
-                finished
-                if finished is not None
-                else run(scenario, **settings, parts=parts, threads=jobs, progress=True)
-            ),
-            design_words,
-            out,
-            plot,
-        )
-    if parts.exists():
-        rmtree(parts)
+        settings = design_settings(scenario, **given)
+        kept = Parts(parts, settings)
+        finished = finished_design(out, settings)
+        with kept.resumable():
+            finish(
+                lambda: (
+                    finished
+                    if finished is not None
+                    else run(scenario, **given, parts=parts, threads=jobs, progress=True)
+                ),
+                design_words,
+                out,
+                plot,
+            )
+    kept.discard()
 
 
 def convergence(

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from ..errors import InputError
+from ..parts import same_settings
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -74,15 +74,11 @@ def finished_design(out: Path, settings: dict[str, Any]) -> xr.Dataset | None:
         return None
     import xarray as xr
 
-    from ..parts import other_setting
-
     try:
         with xr.open_dataset(out, engine="h5netcdf") as file:
             result = file.load()
         kept = json.loads(result.attrs["settings"])
     except (OSError, ValueError, KeyError):
         kept = None
-    other = other_setting(kept, settings)
-    if other is not None:
-        raise InputError("parts", f"{other[0]} in {out}", f"{other[1]}, or another file")
+    same_settings(kept, settings, out)
     return result
