@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -20,7 +21,9 @@ __all__ = ["Parts", "numbers_of", "parts_beside", "same_settings"]
 
 T = TypeVar("T")
 
-_SETTINGS, _SUFFIXES = "settings.json", (".json", ".nc")
+# The settings are the last file that goes: under another name they say that the rest is no longer wanted.
+_SETTINGS, _ENDED = "settings.json", "ended.json"
+_SUFFIXES = (".json", ".nc")
 _FOLDER = "a folder of these results, or none"
 _EXPECTED = "a part of these results, or no such file: it is computed again"
 
@@ -51,12 +54,15 @@ class Parts:
             return False
         if not self.folder.is_dir():
             raise InputError("parts", f"the file {self.folder}", _FOLDER)
-        file = self.folder / _SETTINGS
+        file, ended = self.folder / _SETTINGS, self.folder / _ENDED
+        over = ended.exists() and not file.exists()
         # A folder that was made by a call that was killed before its first file is as good as none.
-        if not file.exists() and all(entry.name.startswith(".") for entry in self.folder.iterdir()):
+        if not over and not file.exists() and all(entry.name.startswith(".") for entry in self.folder.iterdir()):
             return False
-        same_settings(_json(file, _FOLDER), self.settings, self.folder)
-        return True
+        same_settings(_json(ended if over else file, _FOLDER), self.settings, self.folder)
+        if over:
+            self._clear()
+        return not over
 
     def _begin(self) -> None:
         assert self.folder is not None
@@ -69,12 +75,20 @@ class Parts:
             raise
 
     def _files(self) -> list[Path]:
-        """Return the parts that the folder holds."""
-        if not self._begun():
-            return []
+        """Return the parts that the folder holds, if it is of these results."""
         assert self.folder is not None
         kept = (entry for entry in self.folder.iterdir() if entry.suffix in _SUFFIXES and entry.name[0] != ".")
-        return [entry for entry in kept if entry.name != _SETTINGS]
+        return [entry for entry in kept if entry.name not in (_SETTINGS, _ENDED)]
+
+    def holds(self, name: str) -> bool:
+        """Return whether a part of `part` is there already.
+
+        Parameters
+        ----------
+        name
+            Its name.
+        """
+        return self.folder is not None and self._begun() and (self.folder / f"{name}.json").exists()
 
     def part(self, name: str, compute: Callable[[], Any], fits: Callable[[Any], bool]) -> Any:
         """Return a part: from its file, or computed and then kept.
@@ -146,7 +160,7 @@ class Parts:
             done = 0
             # Of other results that were begun there meanwhile, nothing is said.
             with suppress(InputError):
-                done = len(self._files())
+                done = len(self._files()) if self._begun() else 0
             if not done:
                 self.discard()
             if not done or not isinstance(stopped, KeyboardInterrupt):
@@ -160,14 +174,17 @@ class Parts:
         """Remove the parts, once the whole is written, and their folder; what is not of these results stays."""
         # Who began other results there meanwhile keeps them.
         with suppress(InputError):
-            if self.folder is None or not self._begun():
-                return
-            left = [entry for entry in self.folder.iterdir() if is_unfinished(entry)]
-            # The settings come last: what is left without them would be refused.
-            for file in [*left, *self._files(), self.folder / _SETTINGS]:
-                file.unlink(missing_ok=True)
-            with suppress(OSError):
-                self.folder.rmdir()
+            if self.folder is not None and self._begun():
+                os.replace(self.folder / _SETTINGS, self.folder / _ENDED)
+                self._clear()
+
+    def _clear(self) -> None:
+        assert self.folder is not None
+        left = [entry for entry in self.folder.iterdir() if is_unfinished(entry)]
+        for file in [*left, *self._files(), self.folder / _ENDED]:
+            file.unlink(missing_ok=True)
+        with suppress(OSError):
+            self.folder.rmdir()
 
 
 def parts_beside(out: Path) -> Path:

@@ -11,6 +11,7 @@ import typer
 
 from ..errors import InputError
 from ..options import numbers, output_file
+from ..parts import Parts, parts_beside
 
 __all__ = ["blind_app"]
 
@@ -34,14 +35,20 @@ def _make(
 ) -> None:
     """Write datasets of worlds that are not the model, their seals, and answers.json.
 
+    What is done is kept in OUT.parts, answers and all, until the whole is written: the same command goes on from there.
+
     \b
     Examples:
       tumblers blind make --seed 1 --count 100 --out blind
     """  # noqa: D301
-    from .make import make
+    from .make import make, make_settings
 
+    parts = parts_beside(out)
     with _as_options():
-        make(out, seed=seed, count=count, jobs=jobs, progress=True)
+        kept = Parts(parts, make_settings(seed, count))
+        with kept.resumable():
+            make(out, seed=seed, count=count, parts=parts, jobs=jobs, progress=True)
+    kept.discard()
     typer.echo(f"{count} datasets and their answers in {out}")
 
 
@@ -136,6 +143,7 @@ def _as_options() -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        if error.key in ("seed", "count", "jobs", "threads", "out", "only"):
-            raise InputError(f"--{error.key}", error.found, error.expected, error.file) from None
+        if error.key in ("seed", "count", "jobs", "threads", "out", "only", "parts"):
+            option = "out" if error.key == "parts" else error.key
+            raise InputError(f"--{option}", error.found, error.expected, error.file) from None
         raise

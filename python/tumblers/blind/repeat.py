@@ -12,8 +12,8 @@ from ..check import thread_count
 from ..errors import InputError
 from ..progress import OnProgress, native_call
 from ..version import __version__
-from .make import workers
 from .run import DIAGNOSIS, RECORD, REPEAT
+from .workers import workers
 
 __all__ = ["REPEAT_FORMAT", "repeat"]
 

@@ -10,12 +10,12 @@ from pathlib import Path
 from time import perf_counter
 from typing import NamedTuple
 
-from ..atomic import write_files
+from ..atomic import is_unfinished, write_files
 from ..check import thread_count
 from ..errors import InputError
 from ..progress import OnProgress, native_call
 from ..version import __version__
-from .make import workers
+from .workers import workers
 
 __all__ = ["DIAGNOSIS", "RECORD", "RECORD_FORMAT", "REPEAT", "Done", "run"]
 
@@ -100,7 +100,9 @@ def _diagnose(folder: Path, threads: int) -> bool:
     from ..dataset import load
     from ..diagnosis import diagnose
 
-    (folder / REPEAT).unlink(missing_ok=True)
+    # Those of what is written here now; those of a call that was killed would stay for ever.
+    for file in [folder / REPEAT, *filter(is_unfinished, folder.iterdir())]:
+        file.unlink(missing_ok=True)
     start = perf_counter()
     files: dict[Path, bytes | memoryview] = {}
     error = None

@@ -13,7 +13,7 @@ from ..errors import InputError, show
 from ..model import Model
 from ..robot import Robot
 from ..substrate import Substrate
-from .document import write_dataset
+from .document import texts_of, write_dataset
 from .lab_trial import LabTrial
 from .sensor import Sensor
 
@@ -104,6 +104,10 @@ class Dataset:
             if trial.id == id:
                 return trial
         raise InputError("trial", show(id), f"one of {', '.join(trial.id for trial in self.trials)}")
+
+    def texts(self) -> dict[str, str]:
+        """Return the texts of the files that `save` writes, by their paths in the folder."""
+        return texts_of(self, FORMAT)
 
     def save(self, directory: str | PathLike[str]) -> None:
         """Write ``dataset.toml`` and the tracks, in metres and seconds, whole or not at all.

@@ -16,9 +16,29 @@ if TYPE_CHECKING:
     from .dataset import Dataset
     from .lab_trial import LabTrial
 
-__all__ = ["write_dataset"]
+__all__ = ["texts_of", "write_dataset"]
 
 _FILE_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_+-]{0,63}")
+
+
+def texts_of(dataset: Dataset, version: str) -> dict[str, str]:
+    """Return the texts of a dataset's files by their paths in its folder.
+
+    Parameters
+    ----------
+    dataset
+        The dataset.
+    version
+        The name of the format.
+    """
+    names = _track_names(dataset)
+    tracks = {
+        name: write_track_csv(trial.track)
+        for name, trial in zip(names, dataset.trials, strict=True)
+        if trial.track is not None
+    }
+    # The file that names the others comes last.
+    return {**tracks, "dataset.toml": _to_toml(dataset, names, version)}
 
 
 def write_dataset(dataset: Dataset, directory: Path, version: str) -> None:
@@ -38,14 +58,7 @@ def write_dataset(dataset: Dataset, directory: Path, version: str) -> None:
     OSError
         A folder that cannot be made or written to, or a full disk.
     """
-    names = _track_names(dataset)
-    contents = {
-        directory / name: write_track_csv(trial.track).encode()
-        for name, trial in zip(names, dataset.trials, strict=True)
-        if trial.track is not None
-    }
-    # The file that names the others comes last.
-    contents[directory / "dataset.toml"] = _to_toml(dataset, names, version).encode()
+    contents = {directory / name: text.encode() for name, text in texts_of(dataset, version).items()}
     with ExitStack() as undo:
         for folder in sorted({parent for path in contents for parent in path.parents}, key=lambda p: len(p.parts)):
             if not folder.exists():

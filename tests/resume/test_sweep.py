@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import os
-import random
 import shutil
-import signal
 import subprocess
 import sys
-import time
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
@@ -19,6 +16,8 @@ import xarray as xr
 from tumblers import InputError, preset_scenario, sweep
 from tumblers.effects import CATALOGUE, load_file
 from tumblers.parts import Parts
+
+from .kill import files_of, kill_until_done
 
 # The package's attribute of this name is the function.
 module = import_module("tumblers.sweep")
@@ -116,10 +115,6 @@ def tumble(*arguments: str, cwd: Path, limit: int | None = None) -> subprocess.C
     )
 
 
-def files_of(folder: Path) -> dict[str, bytes]:
-    return {str(file.relative_to(folder)): file.read_bytes() for file in folder.rglob("*") if file.is_file()}
-
-
 @pytest.mark.parametrize("drafts", ["0", "0:7"])
 @pytest.mark.parametrize("held", ["someone's", "another sweep's"])
 def test_a_sweep_leaves_a_folder_that_is_not_its_own_as_it_is(tmp_path: Path, drafts: str, held: str) -> None:
@@ -165,43 +160,20 @@ def test_a_full_disk_gets_one_line_and_the_parts_stay(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(os.name == "nt", reason="signals")
 def test_a_sweep_that_is_killed_at_random_times_loses_no_part(tmp_path: Path) -> None:
-    whole, killed = tmp_path / "whole.nc", tmp_path / "killed.nc"
-
-    def start(out: Path) -> subprocess.Popen[bytes]:
-        return subprocess.Popen(
-            [sys.executable, "-c", COMMAND, *ARGUMENTS, "--jobs", "1", "--out", str(out)],
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-        )
-
-    assert start(whole).wait() == 0
-    draw = random.Random(2026)
+    command = [sys.executable, "-c", COMMAND, *ARGUMENTS, "--jobs", "1", "--out"]
+    assert subprocess.run([*command, "whole.nc"], cwd=tmp_path, capture_output=True, check=False).returncode == 0
     parts = tmp_path / "killed.nc.parts"
-    seen: dict[str, bytes] = {}
-    kills = 0
-    while not killed.exists():
-        process = start(killed)
-        # One in four dies while it starts, the others soon after a part more.
-        if draw.random() > 0.25:
-            while process.poll() is None and len(list(parts.glob("*.nc"))) <= len(seen):
-                time.sleep(0.001)
-        time.sleep(draw.uniform(0.0, 0.05))
-        if process.poll() is None:
-            process.send_signal(signal.SIGKILL)
-            kills += 1
-        process.wait()
-        if parts.exists():
-            now = {file.name: file.read_bytes() for file in parts.glob("*.nc")}
-            # What was there is there, as it was.
-            assert seen.items() <= now.items()
-            seen = now
-        assert kills < 60
-    assert kills > 1
-    # A kill between the whole and the parts' end leaves both: the next call only clears up.
-    if parts.exists():
-        assert start(killed).wait() == 0
-    assert not parts.exists()
-    with xr.open_dataset(killed, engine="h5netcdf") as one, xr.open_dataset(whole, engine="h5netcdf") as other:
+    assert (
+        kill_until_done(
+            [*command, "killed.nc"], tmp_path, lambda: files_of(parts, "drafts-*.nc"), tmp_path / "killed.nc", 2026
+        )
+        > 1
+    )
+    assert {file.name for file in tmp_path.iterdir()} == {"killed.nc", "whole.nc"}
+    with (
+        xr.open_dataset(tmp_path / "killed.nc", engine="h5netcdf") as one,
+        xr.open_dataset(tmp_path / "whole.nc", engine="h5netcdf") as other,
+    ):
         xr.testing.assert_identical(one.load(), other.load())
 
 

@@ -9,11 +9,9 @@ import pytest
 from tumblers import InputError
 from tumblers.parts import Parts, parts_beside
 
+from .kill import files_of
+
 SETTINGS = {"drafts_deg": [0.0, float("nan")], "seed": 1}
-
-
-def files_of(folder: Path) -> dict[str, bytes]:
-    return {str(file.relative_to(folder)): file.read_bytes() for file in folder.rglob("*") if file.is_file()}
 
 
 def never() -> object:
@@ -71,6 +69,20 @@ def test_what_a_killed_write_left_is_no_part_and_goes_with_them(folder: Path) ->
     kept.part("one", lambda: 1, bool)
     assert {file.name for file in folder.iterdir()} == {"settings.json", "one.json", unfinished.name}
     kept.discard()
+    assert not folder.exists()
+
+
+def test_parts_that_were_discarded_halfway_are_cleared_up(folder: Path) -> None:
+    kept = Parts(folder, SETTINGS)
+    for name in ("one", "two"):
+        kept.part(name, lambda: 1, bool)
+    (folder / "settings.json").rename(folder / "ended.json")
+    (folder / "one.json").unlink()
+    before = files_of(folder)
+    with pytest.raises(InputError, match=r"^parts: found seed 1 in .*, expected seed 2"):
+        Parts(folder, {**SETTINGS, "seed": 2})
+    assert files_of(folder) == before
+    Parts(folder, SETTINGS)
     assert not folder.exists()
 
 
