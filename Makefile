@@ -48,8 +48,7 @@ deny:
 	cargo deny --locked check
 
 # Beside other simulators, which are installed for this alone.
-peers: $(VENV)/installed
-	$(BIN)/pip install --quiet --disable-pip-version-check 'mujoco>=4.0' 'drake>=1.51'
+peers: $(VENV)/installed $(VENV)/comparing
 	$(BIN)/python benches/against_mujoco.py --page docs/performance.md
 	$(BIN)/python benches/against_drake.py --page docs/performance.md
 
@@ -69,9 +68,19 @@ $(VENV)/installed: $(SOURCES) | $(BIN)/maturin
 
 # What the tests and the lints need beside it.
 $(VENV)/developing: pyproject.toml | $(BIN)/maturin
-	$(BIN)/python -c 'import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"]["dev"], sep="\n")' >$(VENV)/dev.txt
-	$(BIN)/pip install --quiet --disable-pip-version-check -r $(VENV)/dev.txt
+	$(call install_extra,dev)
 	touch $@
+
+# What the comparisons with other simulators need, and the tests of them.
+$(VENV)/comparing: pyproject.toml | $(BIN)/maturin
+	$(call install_extra,peers)
+	touch $@
+
+# The optional dependencies of that name, without the package itself.
+define install_extra
+	$(BIN)/python -c 'import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"]["$(1)"], sep="\n")' >$(VENV)/$(1).txt
+	$(BIN)/pip install --quiet --disable-pip-version-check -r $(VENV)/$(1).txt
+endef
 
 clean:
 	rm -rf target $(VENV) sweep-*.nc sweep-*.png
