@@ -9,7 +9,7 @@ SOURCES := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Carg
 # One interpreter for every cargo call, or pyo3 would be built again for each other one that it finds.
 export PYO3_PYTHON := $(abspath $(BIN)/python)
 
-.PHONY: sweep test lint rust-test python-test dozen fuzz bench peers deny clean
+.PHONY: sweep test lint rust-test python-test dozen fuzz bench peers wheel deny deny-locked clean
 
 sweep: $(VENV)/installed
 	$(BIN)/tumblers sweep --robot spiked --out sweep-spiked.nc --plot sweep-spiked.png
@@ -43,9 +43,19 @@ fuzz: $(VENV)/installed $(VENV)/developing
 	cargo test --release --locked -p tumblers-dynamics --test fuzz -- --ignored
 	TUMBLERS_FUZZ_EXAMPLES=5000 $(BIN)/pytest tests/trust/test_readers.py
 
-# Needs cargo-deny.
+# The wheel that users get, built and run where there are neither the sources nor Rust.
+wheel: $(BIN)/maturin
+	rm -rf target/wheels
+	. $(BIN)/activate && maturin build --release --locked
+	.ci/wheel $(BIN)/python target/wheels/*.whl
+
+# Needs cargo-deny, and the list of advisories from the network.
 deny:
 	cargo deny --locked check
+
+# What depends on the lock file alone, and so is the same today and tomorrow.
+deny-locked:
+	cargo deny --locked check bans licenses sources
 
 # Beside other simulators, which are installed for this alone.
 peers: $(VENV)/installed $(VENV)/comparing
