@@ -12,22 +12,15 @@ import tumblers
 from tumblers import InputError
 from tumblers.blind.repeat import repeat
 from tumblers.blind.run import _diagnose, _is_done, run
-from tumblers.dataset import Dataset, LabTrial, Outcome, Sensor
-from tumblers.field import RotatingField
-from tumblers.presets import ROBOTS, SUBSTRATES
+from tumblers.dataset import Dataset
+
+from .dataset_folder import one_outcome
 
 THREADS = 2
 
 
 def write(folder: Path) -> Path:
-    field = RotatingField(strength_T=0.010, frequency_Hz=3.0)
-    trial = LabTrial(id="f3", field=field, duration_s=0.5, outcome=Outcome(climbs=True))
-    Dataset(
-        robot=ROBOTS["spiked_pdms"].value,
-        substrate=SUBSTRATES["aluminium_pdms"].value,
-        sensor=Sensor(position_noise_m=3e-6, angle_noise_deg=1.0),
-        trials=(trial,),
-    ).save(folder)
+    one_outcome().save(folder)
     return folder
 
 

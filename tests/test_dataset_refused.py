@@ -1,44 +1,14 @@
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import pytest
 
 from tumblers import InputError, dataset
 
-TEXT = """\
-format = "tumblers-dataset/1"
-title = "two trials"
+from .dataset_folder import DATASET as TEXT
+from .dataset_folder import write_dataset
 
-[robot]
-shape = "cuboid"
-length_m = 8.0e-4
-width_m = 4.0e-4
-height_m = 1.0e-4
-mass_kg = 3.78e-8
-magnetization_A_per_m = 15000
-
-[substrate]
-friction_coefficient = 0.3
-
-[sensor]
-position_noise_m = 3.0e-6
-angle_noise_deg = 1.0
-
-[[trial]]
-id = "f05"
-duration_s = 2.0
-field = { kind = "rotating", strength_T = 0.010, frequency_Hz = 5.0 }
-track = "tracks/f05.csv"
-
-[[trial]]
-id = "slope"
-incline_deg = 30.0
-duration_s = 4
-field = { kind = "static", strength_T = 0.020, direction = [0, 0, 1] }
-outcome = { mean_speed_m_per_s = 0.03, sigma_m_per_s = 0.001 }
-"""
 OUTCOME = "{ mean_speed_m_per_s = 0.03, sigma_m_per_s = 0.001 }"
 FIELD = '{ kind = "rotating", strength_T = 0.010, frequency_Hz = 5.0 }'
 
@@ -135,14 +105,7 @@ REFUSED = [
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    folder = tmp_path / "data"
-    (folder / "tracks").mkdir(parents=True)
-    (folder / "tracks" / "f05.csv").write_text("time_s,x_m,tilt_deg\n0,0,0\n0.5,1e-4,3\n1.0,,\n")
-    (tmp_path / "outside.csv").write_text("time_s,x_m\n0,0\n")
-    (folder / "link.csv").symlink_to(tmp_path / "outside.csv")
-    (folder / "loop.csv").symlink_to(folder / "loop.csv")
-    os.mkfifo(folder / "pipe.csv")
-    return folder
+    return write_dataset(tmp_path / "data")
 
 
 @pytest.mark.parametrize(("old", "new", "key", "words"), REFUSED)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import csv
-import errno
 from pathlib import Path
 
 from .check import Vector
 from .errors import InputError, show, unreadable
+from .regular_file import read_regular
 
 __all__ = ["read_field_csv"]
 
@@ -31,10 +31,7 @@ def read_field_csv(key: str, path: Path) -> tuple[tuple[float, ...], tuple[Vecto
         of order or too few.
     """
     try:
-        # A pipe or a device would be waited for without end.
-        if path.exists() and not path.is_file() and not path.is_dir():
-            raise OSError(errno.EINVAL, "no regular file")
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
+        lines = read_regular(path).decode("utf-8-sig").splitlines()
     except (OSError, ValueError) as error:
         raise InputError(key, f"{unreadable(error)}: {repr(str(path))[1:-1]}", "a readable CSV file") from None
     try:

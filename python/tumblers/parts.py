@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from .atomic import is_unfinished, write_files
 from .errors import InputError, unreadable
+from .regular_file import read_regular
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -217,7 +218,7 @@ def numbers_of(count: int, value: object) -> bool:
 
 def _json(file: Path, expected: str) -> Any:
     try:
-        return json.loads(file.read_text(encoding="utf-8"))
+        return json.loads(read_regular(file))
     except (json.JSONDecodeError, RecursionError):
         raise InputError("parts", f"text that is no JSON in {file}", expected) from None
     except (OSError, ValueError) as error:

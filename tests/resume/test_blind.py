@@ -13,11 +13,9 @@ from tumblers.blind.make import make, make_settings
 from tumblers.blind.records import read_records
 from tumblers.blind.run import run
 from tumblers.blind.schedule import task
-from tumblers.dataset import Dataset, LabTrial, Outcome, Sensor
-from tumblers.field import RotatingField
 from tumblers.parts import Parts
-from tumblers.presets import ROBOTS, SUBSTRATES
 
+from ..dataset_folder import one_outcome
 from .kill import files_of, kill_until_done
 
 COMMAND = [sys.executable, "-m", "tumblers", "blind"]
@@ -133,15 +131,8 @@ def test_no_answer_lies_in_the_folder_before_the_whole_is_written(tmp_path: Path
 @pytest.mark.skipif(os.name == "nt", reason="signals")
 def test_diagnoses_that_are_killed_at_random_times_are_the_same(tmp_path: Path) -> None:
     for number in range(4):
-        field = RotatingField(strength_T=0.010, frequency_Hz=3.0 + number)
-        dataset = Dataset(
-            robot=ROBOTS["spiked_pdms"].value,
-            substrate=SUBSTRATES["aluminium_pdms"].value,
-            sensor=Sensor(position_noise_m=3e-6, angle_noise_deg=1.0),
-            trials=(LabTrial(id="f", field=field, duration_s=0.5, outcome=Outcome(climbs=True)),),
-        )
         for folder in ("whole", "killed"):
-            dataset.save(tmp_path / folder / f"dataset-{number:03d}")
+            one_outcome(3.0 + number).save(tmp_path / folder / f"dataset-{number:03d}")
     assert run(tmp_path / "whole", jobs=2) == (4, 0, 0)
     killed = tmp_path / "killed"
 

@@ -7,6 +7,8 @@ from typing import Any
 
 from hypothesis import strategies as st
 
+from ..dataset_folder import DATASET as METRES
+
 SCENARIO = """\
 format = "tumblers-scenario/1"
 [robot]
@@ -38,35 +40,12 @@ name = "friction_coefficient"
 factor = 1.1
 """
 FIELD = "time_s,Bx_T,By_T,Bz_T\n0,0,0,0.01\n4,0,0.01,0\n"
-DATASET = """\
-format = "tumblers-dataset/1"
-title = "two trials"
-[robot]
-shape = "cuboid"
-length_m = 8.0e-4
-width_m = 4.0e-4
-height_m = 1.0e-4
-density_kg_per_m3 = 1200
-magnetization_A_per_m = 15000
-[substrate]
-friction_coefficient = 0.3
-[sensor]
-position_noise_m = 3.0e-6
-angle_noise_deg = 1.0
-micrometres_per_pixel = 2.5
-frames_per_second = 20
-[[trial]]
-id = "f05"
-duration_s = 2.0
-field = { kind = "rotating", strength_T = 0.010, frequency_Hz = 5.0 }
-track = "tracks/f05.csv"
-[[trial]]
-id = "slope"
-incline_deg = 30.0
-duration_s = 4
-field = { kind = "table", csv = "field.csv" }
-outcome = { mean_speed_m_per_s = 0.03, sigma_m_per_s = 0.001 }
-"""
+# With pixels, frames and a table of the field beside it.
+DATASET = (
+    METRES.replace("mass_kg = 3.78e-8", "density_kg_per_m3 = 1200")
+    .replace("angle_noise_deg = 1.0", "angle_noise_deg = 1.0\nmicrometres_per_pixel = 2.5\nframes_per_second = 20")
+    .replace('{ kind = "static", strength_T = 0.020, direction = [0, 0, 1] }', '{ kind = "table", csv = "field.csv" }')
+)
 TRACK = "frame,x,y,tilt_deg\n0,10.5,20,0\n1,11,20.5,3\n2,,,\n3,12,21,\n"
 ANSWER: dict[str, Any] = {
     "kind": "one",

@@ -21,6 +21,7 @@ from tumblers.blind.answer import seal
 from tumblers.blind.make import ANSWERS_FORMAT, SEAL
 from tumblers.blind.records import read_records
 
+from ..dataset_folder import write_dataset
 from .files import ANSWER, DATASET, FIELD, SCENARIO, TRACK, mutated
 
 # `TUMBLERS_FUZZ_EXAMPLES=5000` for the long run.
@@ -81,17 +82,10 @@ def is_sound_or_refused(read: Callable[[], object], folder: Path, file: Path) ->
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     """Return a folder with a scenario and a dataset, with traps in it and beside it."""
-    folder = tmp_path / "data"
-    (folder / "tracks").mkdir(parents=True)
+    folder = write_dataset(tmp_path / "data", DATASET, TRACK)
     (folder / "field.csv").write_text(FIELD)
-    (folder / "tracks" / "f05.csv").write_text(TRACK)
     (folder / "scenario.toml").write_text(SCENARIO)
-    (folder / "dataset.toml").write_text(DATASET)
-    (tmp_path / "outside.csv").write_text(TRACK)
-    (folder / "link.csv").symlink_to(tmp_path / "outside.csv")
-    (folder / "loop.csv").symlink_to(folder / "loop.csv")
     (folder / "up").symlink_to(tmp_path)
-    os.mkfifo(folder / "pipe.csv")
     return folder
 
 

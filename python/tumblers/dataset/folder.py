@@ -12,6 +12,7 @@ from ..check import text
 from ..errors import InputError, show, unreadable
 from ..field import Field, field_from_table
 from ..model import Model
+from ..regular_file import read_regular
 from ..robot import Robot
 from ..section import known_keys, read_section, require_table
 from ..substrate import Substrate
@@ -45,21 +46,24 @@ def load(path: str | PathLike[str]) -> Dataset:
         One line that names the file, the key, what was found and what was expected.
     """
     file = Path(path)
+    if in_folder := file.is_dir():
+        file /= _FILE
     try:
-        if file.is_dir():
-            file /= _FILE
-            _inside(None, _FILE, file.parent)
-        contents = file.read_bytes().decode("utf-8-sig")
-    except InputError as error:
-        raise error.in_file(file) from None
-    except OSError as error:
-        raise InputError(None, unreadable(error), f"a {FORMAT} file", file) from None
-    except ValueError as error:
-        raise InputError(None, unreadable(error), f"a {FORMAT} file", repr(str(file))[1:-1]) from None
-    try:
+        # What the user names is taken as it is; what is found in the folder has to be a file in it.
+        read = read_regular if in_folder else Path.read_bytes
+        contents = _contents(_inside(None, _FILE, file.parent) if in_folder else file, read)
         return _dataset(contents, file.parent)
     except InputError as error:
         raise error.in_file(file) from None
+
+
+def _contents(file: Path, read: Callable[[Path], bytes]) -> str:
+    try:
+        return read(file).decode("utf-8-sig")
+    except (OSError, ValueError) as error:
+        # A NUL byte is not for a line.
+        name = None if isinstance(error, OSError) else repr(str(file))[1:-1]
+        raise InputError(None, unreadable(error), f"a {FORMAT} file", name) from None
 
 
 def _dataset(contents: str, directory: Path) -> Dataset:
@@ -139,7 +143,7 @@ def _track(value: object, directory: Path, sensor: Sensor) -> Track:
 
 
 def _inside(key: str | None, name: object, directory: Path) -> Path:
-    """Return the path of a file in the dataset's folder, or refuse one that is elsewhere or no file."""
+    """Return the path of a file in the dataset's folder, or refuse one that is elsewhere."""
     path = Path(str(name))
     if path.is_absolute():
         raise InputError(key, show(name), "a path that starts at the dataset's folder")
@@ -147,9 +151,6 @@ def _inside(key: str | None, name: object, directory: Path) -> Path:
         found = (directory / path).resolve()
         if not found.is_relative_to(directory.resolve()):
             raise InputError(key, f"{show(name)}, which leads out of the dataset's folder", "a file in it")
-        # A pipe or a device would be waited for without end.
-        if found.exists() and not found.is_file() and not found.is_dir():
-            raise InputError(key, f"{show(name)}, which is no regular file", "a file that can be read")
     except (OSError, RuntimeError):
         raise InputError(key, f"{show(name)}, which cannot be followed", "a file in the dataset's folder") from None
     except ValueError as error:

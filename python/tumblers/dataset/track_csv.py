@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import InputError, show, unreadable
+from ..regular_file import read_regular
 from .pixels import to_substrate
 from .sensor import Sensor
 from .track import CHANNELS, QUATERNION, Array, Track, find_fault
@@ -114,7 +115,7 @@ def write_track_csv(track: Track) -> str:
 
 def _read(key: str, path: Path, name: str) -> _Table:
     try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
+        lines = read_regular(path).decode("utf-8-sig").splitlines()
     except (OSError, ValueError) as error:
         raise InputError(key, f"{unreadable(error)}: {name}", "a readable CSV file") from None
     try:
