@@ -4,17 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .case import FINE_STEP_S, STEP_S, Case, at_rest, on_slope, sliding
 from .track import Track, lowest_m
 
-__all__ = ["TRANSIENT_S", "Contact", "Tumble", "contact_of"]
+if TYPE_CHECKING:
+    from tumblers.progress import OnPhase
+
+    from .results import Profile
+
+__all__ = ["TRANSIENT_S", "Contact", "Tumble", "contact_of", "contacts_of"]
 
 # A run starts with the field off the robot's axis, and with a jerk that is not counted.
 TRANSIENT_S = 0.2
 _CREEP_FROM_S = 1.0
+# What slides has settled into a peer's soft contact before.
+_SETTLE_S = 0.1
 
 
 @dataclass(frozen=True)
@@ -84,6 +92,39 @@ def contact_of(engine: str, robots: Sequence[Case], track_of: Callable[[Case], T
         case = sliding(step_s)
         lifts.append(_up(float(lowest_m(track_of(case), case.vertices_m).max())))
     return Contact(engine, tumbles, _up(-float(lowest_at_rest)), 1e6 * creep, lifts[0], lifts[1])
+
+
+def contacts_of(
+    peer: str,
+    profiles: Sequence[Profile],
+    robots: Sequence[Case],
+    ours: Callable[[Case], Track],
+    recorded: Callable[[Case, Any, float], Any],
+    tell: OnPhase,
+) -> list[Contact]:
+    """Measure our engine, and a peer with each of its settings.
+
+    Parameters
+    ----------
+    peer, profiles
+        Its name, and its settings.
+    robots
+        The cases that tumble.
+    ours, recorded
+        Run a case: ours, and the peer's with its settings and the time that it lies at rest before, s.
+    tell
+        Told how many settings are done.
+    """
+    contacts = [contact_of("tumblers", robots, ours)]
+    for i, settings in enumerate(profiles):
+        tell("contact", i, len(profiles))
+
+        def track_of(case: Case, settings: Profile = settings) -> Track:
+            track: Track = recorded(case, settings, _SETTLE_S).track
+            return track
+
+        contacts.append(contact_of(f"{peer}, {settings.name}", robots, track_of))
+    return contacts
 
 
 def _tumble(case: Case, track: Track) -> Tumble:

@@ -2,27 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 from tumblers.version import __version__
 
-from .case import Case, tumbling
+from .case import tumbling
 from .clock import alternate, microseconds
-from .contact import Contact, contact_of
-from .drake_engine import HYDROELASTIC, POINT, VERSION, Settings, recorded, replayed
+from .contact import contacts_of
+from .drake_engine import HYDROELASTIC, POINT, VERSION, recorded, replayed
 from .machine import conditions, load
 from .ours import Health, swept
 from .ours import recorded as our_run
-from .speed import Speed, timed
+from .results import Results
+from .speed import COPIES, timed
 
 if TYPE_CHECKING:
     from tumblers.progress import OnPhase
 
 __all__ = ["DrakeResults", "PathTimes", "compare"]
 
-_COPIES = 16
-_SETTLE_S = 0.1
 # Mean time of a step in the authors' released runs, ms, and its unknowns.
 _PATH_MS = {"cuboid": (6.4, 24), "spiked": (7.8, 26), "spiked ends": (7.4, 28)}
 
@@ -52,36 +51,24 @@ class PathTimes:
         return self.recorded_us / self.ours_us
 
 
-@dataclass(frozen=True)
-class DrakeResults:
+@dataclass(frozen=True, kw_only=True)
+class DrakeResults(Results):
     """All figures."""
 
-    conditions: dict[str, Any]
-    speeds: list[Speed]
-    contacts: list[Contact]
+    peer = "Drake"
     paths: list[PathTimes]
-    max_residual: float
-    unconverged_steps: int
-    settings: dict[str, str] = field(
-        default_factory=lambda: {settings.name: settings.words for settings in (POINT, HYDROELASTIC)}
-    )
 
     def to_json(self) -> dict[str, Any]:
         """Return what ``--json`` writes: the headline figures by name, then everything."""
         return {
             "steps_per_second_ratio": min(row.ratio.median for row in self.speeds),
             "our_us_per_step": self.speeds[0].ours_us,
-            "max_residual": self.max_residual,
-            "unconverged_steps": self.unconverged_steps,
-            "conditions": self.conditions,
-            "drake_settings": self.settings,
-            "speeds": [asdict(row) for row in self.speeds],
-            "contacts": [asdict(contact) for contact in self.contacts],
+            **super().to_json(),
             "path_recorded": [{**asdict(path), "ratio": path.ratio} for path in self.paths],
         }
 
 
-def compare(repetitions: int, tell: OnPhase, copies: int = _COPIES) -> DrakeResults:
+def compare(repetitions: int, tell: OnPhase, copies: int = COPIES) -> DrakeResults:
     """Measure both engines, one thread.
 
     Parameters
@@ -104,20 +91,18 @@ def compare(repetitions: int, tell: OnPhase, copies: int = _COPIES) -> DrakeResu
         pair = swept([cuboid], copies, 1, health), replayed(cuboid, settings, recorded(cuboid, settings))
         call = f"AdvanceTo, {settings.name}"
         speeds.append(timed(cuboid.name, call, 1, pair, repetitions, lambda: tell("speed", next(done), total)))
-    contacts = [contact_of("tumblers", [cuboid], lambda case: our_run(case, health)[0])]
-    for i, settings in enumerate(profiles):
-        tell("contact", i, len(profiles))
-        contacts.append(_contact(settings, cuboid))
+    contacts = contacts_of(DrakeResults.peer, profiles, [cuboid], lambda case: our_run(case, health)[0], recorded, tell)
     mine = alternate({case.name: swept([case], copies, 1, health) for case in robots}, repetitions, lambda: None)
     paths = [
         PathTimes(robot, unknowns, 1e3 * milliseconds, microseconds(mine[robot]))
         for robot, (milliseconds, unknowns) in _PATH_MS.items()
     ]
-    return DrakeResults(found, speeds, contacts, paths, health.max_residual, health.unconverged_steps)
-
-
-def _contact(settings: Settings, cuboid: Case) -> Contact:
-    # What slides has settled into its soft contact before.
-    return contact_of(
-        f"Drake, {settings.name}", [cuboid], lambda case: recorded(case, settings, settle_s=_SETTLE_S).track
+    return DrakeResults(
+        conditions=found,
+        profiles=profiles,
+        speeds=speeds,
+        contacts=contacts,
+        paths=paths,
+        max_residual=health.max_residual,
+        unconverged_steps=health.unconverged_steps,
     )

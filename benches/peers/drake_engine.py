@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from . import units
 from .case import Case
 from .clock import Contestant
+from .scaled import Scaled
 from .track import Track
 
 __all__ = ["HYDROELASTIC", "POINT", "VERSION", "Recording", "Settings", "recorded", "replayed"]
@@ -135,32 +136,31 @@ def recorded(case: Case, settings: Settings, settle_s: float = 0.0) -> Recording
     settle_s
         How long it lies at rest before it gets its velocity, s.
     """
-    scenario, h = case.scenario, case.scenario.run.step_s
+    scaled, h = Scaled.of(case), case.scenario.run.step_s
     builder = drake.DiagramBuilder()
     plant = _plant(case, settings, builder)
     simulator = drake.Simulator(builder.Build())
     root = simulator.get_mutable_context()
     context = plant.GetMyMutableContextFromRoot(root)
     port = plant.get_applied_generalized_force_input_port()
-    plant.SetPositions(context, [1.0, 0.0, 0.0, 0.0, *(case.start_m * units.LENGTH)])
+    plant.SetPositions(context, [1.0, 0.0, 0.0, 0.0, *scaled.position])
     control = np.zeros(6)
-    control[5] = -scenario.substrate.electrostatic_force_N * units.FORCE
+    control[5] = scaled.attraction
     port.FixValue(context, control)
     simulator.Initialize()
     simulator.AdvanceTo(round(settle_s / h) * h)
     velocity = plant.GetVelocities(context).copy()
-    velocity[3:] += np.array(scenario.initial.linear_velocity_m_per_s) * units.LENGTH
+    velocity[3:] += scaled.velocity
     plant.SetVelocities(context, velocity)
     root.SetTime(0.0)
     simulator.Initialize()
 
     start = plant.GetPositionsAndVelocities(context).copy()
-    moment = np.array(scenario.robot.magnetic_moment_A_m2) * units.TORQUE
-    field = scenario.field.core()
+    field = case.scenario.field.core()
     controls, poses = np.tile(control, (case.steps, 1)), np.empty((case.steps, 7))
     for k in range(case.steps):
         rotation = drake.Quaternion(_unit(plant.GetPositions(context)[:4])).rotation()
-        controls[k, :3] = np.cross(rotation @ moment, np.array(field.at(k * h)))
+        controls[k, :3] = np.cross(rotation @ scaled.moment, np.array(field.at(k * h)))
         port.FixValue(context, controls[k])
         simulator.AdvanceTo((k + 1) * h)
         poses[k] = plant.GetPositions(context)

@@ -6,7 +6,7 @@ from .contact_table import contact_table
 from .drake_comparison import DrakeResults
 from .machine import conditions_in_words
 from .page import table
-from .speed import speed_table
+from .speed import speed_lines, speed_table
 
 __all__ = ["lines", "section"]
 
@@ -35,7 +35,6 @@ def section(results: DrakeResults) -> str:
     results
         All figures.
     """
-    settings = "\n".join(f"- *{name}*: {words}" for name, words in results.settings.items())
     rows = [
         [
             path.robot,
@@ -53,8 +52,8 @@ def section(results: DrakeResults) -> str:
             conditions_in_words(results.conditions),
             f"Our greatest residual of a step is {results.max_residual:.2g}; {results.unconverged_steps} steps of all"
             " runs did not converge.",
-            _SETUP.format(settings=settings),
-            speed_table(results.speeds, "Drake"),
+            _SETUP.format(settings=results.settings_list),
+            speed_table(results.speeds, results.peer),
             contact_table(results.contacts),
             "### PATH",
             table(head, rows),
@@ -71,9 +70,4 @@ def lines(results: DrakeResults) -> list[str]:
     results
         All figures.
     """
-    rows = [
-        f"{row.situation}, {row.peer}: {row.ours_us:.3g} against {row.theirs_us:.3g} µs a step, ratio"
-        f" {row.ratio.median:.3g}"
-        for row in results.speeds
-    ]
-    return [*rows, f"greatest residual of a step: {results.max_residual:.2g}"]
+    return [*speed_lines(results.speeds), f"greatest residual of a step: {results.max_residual:.2g}"]

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 from tumblers.version import __version__
 
 from .case import Case, at_rest, in_flight, tumbling
 from .clock import Contestant
-from .contact import Contact, contact_of
+from .contact import contacts_of
 from .grid import Grid, timed_grid
 from .machine import conditions, is_busy, load, threads
 from .mujoco_engine import VERSION, recorded, replayed, stepped, stretch_on_a_line
-from .mujoco_model import SHIPPED, STIFF, TIGHT, Settings
+from .mujoco_model import SHIPPED, STIFF, TIGHT
 from .ours import Health, line_contact, swept, throughout
 from .ours import recorded as our_run
-from .speed import Speed, timed
+from .results import Results
+from .speed import COPIES, Speed, timed
 from .target import Target
 
 if TYPE_CHECKING:
@@ -24,27 +25,18 @@ if TYPE_CHECKING:
 
 __all__ = ["MujocoResults", "compare"]
 
-# Runs of 2000 steps in one sample on one thread: tens of milliseconds.
-_COPIES = 16
 # A grid takes seconds.
 _MOST_GRIDS = 3
-_SETTLE_S = 0.1
+_PROFILES = (SHIPPED, STIFF, TIGHT)
 
 
-@dataclass(frozen=True)
-class MujocoResults:
+@dataclass(frozen=True, kw_only=True)
+class MujocoResults(Results):
     """All figures."""
 
-    conditions: dict[str, Any]
-    speeds: list[Speed]
-    contacts: list[Contact]
+    peer = "MuJoCo"
     grids: list[Grid]
     targets: list[Target]
-    max_residual: float
-    unconverged_steps: int
-    settings: dict[str, str] = field(
-        default_factory=lambda: {settings.name: settings.words for settings in (SHIPPED, STIFF, TIGHT)}
-    )
 
     def to_json(self) -> dict[str, Any]:
         """Return what ``--json`` writes: the headline figures by name, then everything."""
@@ -55,18 +47,13 @@ class MujocoResults:
             "steps_per_second_ratio_all_threads": next(on_all, None),
             "our_us_per_step": headline.ours_us,
             "mujoco_us_per_step": headline.theirs_us,
-            "max_residual": self.max_residual,
-            "unconverged_steps": self.unconverged_steps,
-            "conditions": self.conditions,
-            "mujoco_settings": self.settings,
-            "speeds": [asdict(row) for row in self.speeds],
-            "contacts": [asdict(contact) for contact in self.contacts],
+            **super().to_json(),
             "grids": [asdict(grid) for grid in self.grids],
             "targets": [{**asdict(target), "met": target.met} for target in self.targets],
         }
 
 
-def compare(repetitions: int, tell: OnPhase, copies: int = _COPIES, grids: bool = True) -> MujocoResults:
+def compare(repetitions: int, tell: OnPhase, copies: int = COPIES, grids: bool = True) -> MujocoResults:
     """Measure both engines.
 
     Parameters
@@ -81,10 +68,18 @@ def compare(repetitions: int, tell: OnPhase, copies: int = _COPIES, grids: bool 
     found = conditions({"tumblers": __version__, "mujoco": VERSION}, load(), repetitions)
     health = Health()
     speeds = _speeds(repetitions, tell, copies, health)
-    contacts = _contacts(tell, health)
+    contacts = contacts_of("MuJoCo", _PROFILES[::-1], tumbling(), lambda case: our_run(case, health)[0], recorded, tell)
     times = _grids(min(repetitions, _MOST_GRIDS), tell, health) if grids else []
-    targets = _targets(speeds, times, health, is_busy(found))
-    return MujocoResults(found, speeds, contacts, times, targets, health.max_residual, health.unconverged_steps)
+    return MujocoResults(
+        conditions=found,
+        profiles=_PROFILES,
+        speeds=speeds,
+        contacts=contacts,
+        grids=times,
+        targets=_targets(speeds, times, health, is_busy(found)),
+        max_residual=health.max_residual,
+        unconverged_steps=health.unconverged_steps,
+    )
 
 
 @dataclass(frozen=True)
@@ -151,22 +146,6 @@ def _situations(cuboid: Case, copies: int, health: Health) -> list[_Race]:
         ),
         _Race(f"cuboid, {rest.name}", f"mj_step, {STIFF.name}", 1, (ours(rest), stepped(rest, STIFF, copies))),
     ]
-
-
-def _contacts(tell: OnPhase, health: Health) -> list[Contact]:
-    robots, profiles = tumbling(), (TIGHT, STIFF, SHIPPED)
-    contacts = [contact_of("tumblers", robots, lambda case: our_run(case, health)[0])]
-    for i, settings in enumerate(profiles):
-        tell("contact", i, len(profiles))
-        contacts.append(_contact(settings, robots))
-    return contacts
-
-
-def _contact(settings: Settings, robots: list[Case]) -> Contact:
-    # What slides has settled into its soft contact before.
-    return contact_of(
-        f"MuJoCo, {settings.name}", robots, lambda case: recorded(case, settings, settle_s=_SETTLE_S).track
-    )
 
 
 def _grids(repetitions: int, tell: OnPhase, health: Health) -> list[Grid]:

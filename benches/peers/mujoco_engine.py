@@ -13,6 +13,7 @@ from . import units
 from .case import Case
 from .clock import Contestant
 from .mujoco_model import Settings, xml
+from .scaled import Scaled
 from .track import Track, longest_stretch
 
 __all__ = ["VERSION", "Recording", "recorded", "replayed", "stepped", "stretch_on_a_line"]
@@ -76,18 +77,16 @@ def recorded(case: Case, settings: Settings, settle_s: float = 0.0) -> Recording
     settle_s
         How long it lies at rest before it gets its velocity, s.
     """
-    scenario = case.scenario
+    scenario, scaled = case.scenario, Scaled.of(case)
     model = mujoco.MjModel.from_xml_string(xml(case, settings))
     data = mujoco.MjData(model)
-    data.qpos[:3] = case.start_m * units.LENGTH
-    force = -scenario.substrate.electrostatic_force_N * units.FORCE
-    data.qfrc_applied[2] = force
+    data.qpos[:3] = scaled.position
+    data.qfrc_applied[2] = scaled.attraction
     mujoco.mj_step(model, data, nstep=round(settle_s / scenario.run.step_s))
-    data.qvel[:3] += np.array(scenario.initial.linear_velocity_m_per_s) * units.LENGTH
+    data.qvel[:3] += scaled.velocity
     data.time = 0.0
 
     steps, h, field = case.steps, scenario.run.step_s, scenario.field.core()
-    moment = np.array(scenario.robot.magnetic_moment_A_m2) * units.TORQUE
     controls = np.zeros((steps, 6))
     poses = np.empty((steps, 7))
     contacts = np.empty(steps, dtype=np.int64)
@@ -98,8 +97,8 @@ def recorded(case: Case, settings: Settings, settle_s: float = 0.0) -> Recording
         mujoco.mj_getState(model, data, states[k], _FULL)
         warmstarts[k] = data.qacc_warmstart
         mujoco.mju_quat2Mat(rotation, data.qpos[3:])
-        controls[k, 2] = force
-        controls[k, 3:] = np.cross(moment, rotation.reshape(3, 3).T @ np.array(field.at(k * h)))
+        controls[k, 2] = scaled.attraction
+        controls[k, 3:] = np.cross(scaled.moment, rotation.reshape(3, 3).T @ np.array(field.at(k * h)))
         data.qfrc_applied[:] = controls[k]
         mujoco.mj_step(model, data)
         poses[k] = data.qpos
@@ -181,6 +180,6 @@ def stepped(case: Case, settings: Settings, copies: int) -> Contestant:
     """
     model = mujoco.MjModel.from_xml_string(xml(case, settings))
     data = mujoco.MjData(model)
-    data.qfrc_applied[2] = -case.scenario.substrate.electrostatic_force_N * units.FORCE
+    data.qfrc_applied[2] = Scaled.of(case).attraction
     steps = copies * case.steps
     return Contestant(lambda: mujoco.mj_step(model, data, nstep=steps), steps)

@@ -7,7 +7,7 @@ from .grid import Grid
 from .machine import conditions_in_words
 from .mujoco_comparison import MujocoResults
 from .page import table
-from .speed import speed_table
+from .speed import speed_lines, speed_table
 from .target import target_table
 
 __all__ = ["lines", "section"]
@@ -46,7 +46,6 @@ def section(results: MujocoResults) -> str:
     results
         All figures.
     """
-    settings = "\n".join(f"- *{name}*: {words}" for name, words in results.settings.items())
     headline = results.speeds[0].ratio
     parts = [
         "## Against MuJoCo",
@@ -57,9 +56,9 @@ def section(results: MujocoResults) -> str:
         "### Aims",
         target_table(results.targets),
         "### The same robots",
-        _SETUP.format(settings=settings),
+        _SETUP.format(settings=results.settings_list),
         "### Speed",
-        speed_table(results.speeds, "MuJoCo"),
+        speed_table(results.speeds, results.peer),
         _SPEED,
         "### Contact",
         contact_table(results.contacts),
@@ -91,13 +90,8 @@ def lines(results: MujocoResults) -> list[str]:
     results
         All figures.
     """
-    rows = [
-        f"{row.situation}, {row.peer}, {row.threads} thread{'s' if row.threads > 1 else ''}: {row.ours_us:.3g} against"
-        f" {row.theirs_us:.3g} µs a step, ratio {row.ratio.median:.3g}"
-        for row in results.speeds
-    ]
     aims = [
         f"{target.what}: {target.measured:.3g}, aim {target.aim:g}, {target.verdict.replace('*', '')}"
         for target in results.targets
     ]
-    return [*rows, *aims]
+    return [*speed_lines(results.speeds), *aims]

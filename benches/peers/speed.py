@@ -8,7 +8,10 @@ from dataclasses import dataclass
 from .clock import Contestant, Ratio, alternate, microseconds, ratio
 from .page import table
 
-__all__ = ["Speed", "speed_table", "timed"]
+__all__ = ["COPIES", "Speed", "speed_lines", "speed_table", "timed"]
+
+# Runs of 2000 steps in one sample on one thread: tens of milliseconds.
+COPIES = 16
 
 
 @dataclass(frozen=True)
@@ -97,3 +100,18 @@ def speed_table(rows: list[Speed], peer: str) -> str:
         for row in rows
     ]
     return table([*head, "our steps per second over theirs"], body)
+
+
+def speed_lines(rows: list[Speed]) -> list[str]:
+    """Return the rows as a command says them.
+
+    Parameters
+    ----------
+    rows
+        What was timed.
+    """
+    return [
+        f"{row.situation}, {row.peer}, {row.threads} thread{'s' if row.threads > 1 else ''}: {row.ours_us:.3g} against"
+        f" {row.theirs_us:.3g} µs a step, ratio {row.ratio.median:.3g}"
+        for row in rows
+    ]
