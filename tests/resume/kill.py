@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-__all__ = ["files_of", "kill_until_done"]
+__all__ = ["files_of", "kill_until_done", "small_disk"]
 
 _MOST = 60
 
@@ -18,6 +18,17 @@ _MOST = 60
 def files_of(folder: Path, pattern: str = "*") -> dict[str, bytes]:
     """Return the files below a folder."""
     return {str(file.relative_to(folder)): file.read_bytes() for file in folder.rglob(pattern) if file.is_file()}
+
+
+def small_disk(limit: int) -> Callable[[], None]:
+    """Return what a process does first, so that no file of it gets more than so many bytes, as on a full disk."""
+
+    def limited() -> None:
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+    return limited
 
 
 def kill_until_done(

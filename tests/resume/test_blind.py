@@ -3,6 +3,7 @@ from __future__ import annotations
 import json
 import os
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 
@@ -16,7 +17,7 @@ from tumblers.blind.schedule import task
 from tumblers.parts import Parts
 
 from ..dataset_folder import one_outcome
-from .kill import files_of, kill_until_done
+from .kill import files_of, kill_until_done, small_disk
 
 COMMAND = [sys.executable, "-m", "tumblers", "blind"]
 # Worlds without an effect are quick to draw.
@@ -80,6 +81,31 @@ def test_what_was_killed_while_it_was_written_goes_on(kept: Path, tmp_path: Path
     # And once more, where the answers are there, too.
     make(tmp_path / "two", seed=SEED, count=2, parts=tmp_path / "two.parts", jobs=1)
     assert files_of(tmp_path / "two") == made
+
+
+@pytest.mark.skipif(os.name == "nt", reason="limits")
+def test_a_full_disk_gets_one_line_and_the_parts_stay(kept: Path, tmp_path: Path) -> None:
+    shutil.copytree(kept / "two.parts", tmp_path / "two.parts")
+    before = files_of(tmp_path)
+    command = [*COMMAND, "make", "--seed", str(SEED), "--count", "2", "--jobs", "1", "--out", "two"]
+    environment = os.environ | {"PYTHONDONTWRITEBYTECODE": "1"}
+    done = subprocess.run(
+        command,
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+        env=environment,
+        preexec_fn=small_disk(1000),
+    )
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr.startswith("tumblers: [Errno 27] File too large")
+    assert done.stderr.count("\n") == 1
+    assert files_of(tmp_path) == before
+    assert not (tmp_path / "two").exists()
+    assert subprocess.run(command, cwd=tmp_path, capture_output=True, check=False, env=environment).returncode == 0
+    assert files_of(tmp_path / "two") == files_of(kept / "two")
+    assert not (tmp_path / "two.parts").exists()
 
 
 def test_other_datasets_are_never_mixed_in(kept: Path, tmp_path: Path) -> None:

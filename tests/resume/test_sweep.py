@@ -17,7 +17,7 @@ from tumblers import InputError, preset_scenario, sweep
 from tumblers.effects import CATALOGUE, load_file
 from tumblers.parts import Parts
 
-from .kill import files_of, kill_until_done
+from .kill import files_of, kill_until_done, small_disk
 
 # The package's attribute of this name is the function.
 module = import_module("tumblers.sweep")
@@ -97,13 +97,6 @@ def test_a_part_that_is_none_is_refused_by_its_name(tmp_path: Path, spoil: str) 
 
 def tumble(*arguments: str, cwd: Path, limit: int | None = None) -> subprocess.CompletedProcess[str]:
     """Run a command whose every draft is a part, with files of at most so many bytes."""
-
-    def small_disk() -> None:
-        import resource
-
-        assert limit is not None
-        resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
-
     return subprocess.run(
         [sys.executable, "-c", COMMAND, *arguments],
         capture_output=True,
@@ -111,7 +104,7 @@ def tumble(*arguments: str, cwd: Path, limit: int | None = None) -> subprocess.C
         cwd=cwd,
         check=False,
         env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"},
-        preexec_fn=None if limit is None else small_disk,
+        preexec_fn=None if limit is None else small_disk(limit),
     )
 
 
