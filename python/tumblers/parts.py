@@ -14,11 +14,12 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from .atomic import is_unfinished, write_files
 from .errors import InputError, unreadable
 from .regular_file import read_regular
+from .same_settings import same_settings
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Parts", "numbers_of", "parts_beside", "same_settings"]
+__all__ = ["Parts", "numbers_of", "parts_beside"]
 
 T = TypeVar("T")
 
@@ -79,7 +80,7 @@ class Parts:
         """Return the parts that the folder holds, if it is of these results."""
         assert self.folder is not None
         kept = (entry for entry in self.folder.iterdir() if entry.suffix in _SUFFIXES and entry.name[0] != ".")
-        return [entry for entry in kept if entry.name not in (_SETTINGS, _ENDED)]
+        return [entry for entry in kept if entry.name not in (_SETTINGS, _ENDED) and entry.is_file()]
 
     def holds(self, name: str) -> bool:
         """Return whether a part of `part` is there already.
@@ -173,8 +174,8 @@ class Parts:
 
     def discard(self) -> None:
         """Remove the parts, once the whole is written, and their folder; what is not of these results stays."""
-        # Who began other results there meanwhile keeps them.
-        with suppress(InputError):
+        # Who began other results there meanwhile keeps them; who ended the same ones has removed them.
+        with suppress(InputError, FileNotFoundError):
             if self.folder is not None and self._begun():
                 os.replace(self.folder / _SETTINGS, self.folder / _ENDED)
                 self._clear()
@@ -243,35 +244,3 @@ def _netcdf_bytes(dataset: xr.Dataset) -> memoryview:
     from .netcdf import netcdf_bytes
 
     return netcdf_bytes(dataset)
-
-
-def same_settings(kept: object, settings: Mapping[str, Any], where: Path) -> None:
-    """Refuse results of other settings.
-
-    Parameters
-    ----------
-    kept, settings
-        Settings of the results that are there, and those wanted.
-    where
-        Where they are.
-
-    Raises
-    ------
-    InputError
-        For the key ``parts``: the first setting that differs.
-    """
-    if not isinstance(kept, Mapping):
-        raise InputError("parts", f"no settings in {where}", "those of these results, or another file")
-    for key in dict.fromkeys([*settings, *kept]):
-        pair = kept.get(key), settings.get(key)
-        # As text, a NaN is the same as another.
-        if pair[0] != pair[1] and json.dumps(pair[0]) != json.dumps(pair[1]):
-            found, expected = (_short(key, value) for value in pair)
-            if found == expected:
-                found, expected = f"another {key}", f"this {key}"
-            raise InputError("parts", f"{found} in {where}", f"{expected}, or another file")
-
-
-def _short(key: str, value: object) -> str:
-    text = json.dumps(value)
-    return f"another {key}" if len(text) > 40 else f"{key} {text}"

@@ -91,9 +91,11 @@ def test_what_is_not_of_the_results_stays(folder: Path) -> None:
     kept.part("one", lambda: 1, bool)
     (folder / "mine").mkdir()
     (folder / "mine" / "settings.json").write_text("{}")
+    (folder / "mine.nc").mkdir()
     (folder / ".notes").write_text("mine")
     kept.discard()
     assert files_of(folder) == {"mine/settings.json": b"{}", ".notes": b"mine"}
+    assert (folder / "mine.nc").is_dir()
 
 
 def test_another_process_may_end_the_same_results(folder: Path) -> None:

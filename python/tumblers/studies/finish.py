@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from ..parts import same_settings
+from ..same_settings import same_settings
 
 if TYPE_CHECKING:
     import xarray as xr
