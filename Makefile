@@ -38,7 +38,7 @@ dozen: $(VENV)/installed $(VENV)/developing
 bench:
 	cargo bench -p tumblers-benches --locked
 
-# Ten million steps of random bodies, and the readers: about an hour of one core. See docs/trust.md.
+# Ten million steps of random bodies, about 22 minutes of one core, and the readers. See docs/trust.md.
 fuzz: $(VENV)/installed $(VENV)/developing
 	cargo test --release --locked -p tumblers-dynamics --test fuzz -- --ignored
 	TUMBLERS_FUZZ_EXAMPLES=5000 $(BIN)/pytest tests/trust/test_readers.py
