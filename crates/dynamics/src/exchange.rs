@@ -9,20 +9,12 @@ use crate::judgement::{INSIDE, Verdict, judge};
 use crate::predictor::{closest_contact, contact, other_starts};
 use crate::reduced::{Evaluation, Reduced, Unknowns, solve};
 use crate::step::Step;
+use crate::warm::Warm;
 use geometry::{Generator, Support};
 
 const MAX_EXCHANGES: usize = 24;
 /// The tilt (rad) from which a body is taken onto a curved rim.
 const RIM_TILT: f64 = 1e-5;
-
-/// Where a step starts its search: the support and the unknowns of the step before.
-#[derive(Debug, Clone, Copy)]
-pub struct Warm {
-    /// What touched.
-    pub support: Support,
-    /// Its solution.
-    pub unknowns: Unknowns,
-}
 
 /// The support that was found and its solution.
 #[derive(Debug, Clone, Copy)]
@@ -66,7 +58,6 @@ fn exchange(step: &Step, warm: &Warm, wanted: Wanted, iterations: &mut u32) -> F
     let mut visited = [Support::None; MAX_EXCHANGES];
     let mut support = warm.support;
     let mut start = warm.unknowns;
-    start.angular = step.state.angular;
     let mut tried = 0;
     loop {
         visited[tried] = support;

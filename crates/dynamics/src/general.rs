@@ -4,12 +4,12 @@
 //! the surfaces are tried in the order of how far they face the substrate.
 
 use crate::contact::{ContactPoints, downward};
-use crate::exchange::Warm;
 use crate::problem::{FREE, StepProblem};
 use crate::residual::Rows;
 use crate::rotation::cayley;
 use crate::solution::set_normal_cone;
 use crate::step::Step;
+use crate::warm::Warm;
 use crate::{StepSolution, Vec3};
 use faer::MatMut;
 use geometry::{Body, Support};

@@ -37,6 +37,7 @@ pub mod stepper;
 pub mod substrate;
 pub mod surroundings;
 pub mod trial;
+pub mod warm;
 
 pub use adhesion::Adhesion;
 pub use batch::{Outcome, rollouts, sweep};

@@ -18,6 +18,7 @@ use crate::friction::FrictionRows;
 use crate::rotation::{cayley, cayley_tangent};
 use crate::step::Step;
 use crate::{Mat3, Vec3};
+use elimination::Factors;
 use geometry::Support;
 use nalgebra::{RowVector3, SMatrix, SVector};
 use scales::Scales;
@@ -25,14 +26,19 @@ use scales::Scales;
 mod elimination;
 mod scales;
 
-/// Scaled residual at which the reduced problem counts as solved. Rounding leaves about 1e-15.
-const TOLERANCE: f64 = 1e-13;
+/// Scaled residual at which the reduced problem counts as solved.
+const TOLERANCE: f64 = 1e-14;
+/// What rounding leaves of it. A start that has more is sharpened, so that what carries it on never feeds on its own errors.
+const ROUNDING: f64 = 1e-15;
 /// Scaled residual that is still good where rounding stops Newton's method.
 const ACCEPTABLE: f64 = 1e-11;
 const MAX_ITERATIONS: u32 = 40;
 const MAX_HALVINGS: u32 = 8;
 /// `|N|/P` below which the ECP is taken at the middle of the support.
 const NO_FORCE: f64 = 1e-14;
+/// Over its scale, an unknown that is zero. Each iteration takes one that has to vanish down by many orders, and processors are
+/// slow with what is left below 1e-308.
+const NOTHING: f64 = 1e-100;
 
 /// The unknowns of the reduced problem.
 #[derive(Debug, Clone, Copy)]
@@ -90,22 +96,35 @@ pub fn solve(step: &Step, support: Support, hang: Option<u16>, start: &Unknowns)
     }
 }
 
-/// Semismooth Newton with step halving on the greatest scaled row.
+/// Semismooth Newton with step halving on the greatest scaled row. Where one more fall by the ratio of the last is enough, the
+/// Jacobian serves once more: so near to the solution it hardly changes.
 fn newton<const N: usize>(step: &Step, support: Support, hang: Option<u16>, start: &Unknowns) -> Reduced {
     let scales = Scales::<N>::new(step, start);
     let mut here = Rows::<N>::new(step, support, hang, start, &scales);
+    let mut kept: Option<Factors<N>> = None;
     let mut iterations = 0;
-    while here.at.error > TOLERANCE && iterations < MAX_ITERATIONS {
+    let mut enough = ROUNDING;
+    while here.at.error > enough && iterations < MAX_ITERATIONS {
         iterations += 1;
-        let jacobian = here.jacobian(step, support, hang, &scales);
-        let Some(direction) = elimination::solve(jacobian, &here.value) else { break };
+        let old = kept.is_some();
+        let Some(factors) = kept.take().or_else(|| Factors::of(here.jacobian(step, support, hang, &scales))) else {
+            break;
+        };
+        let direction = factors.solve(&here.value);
         let rows_after = |length: f64| {
             Rows::<N>::new(step, support, hang, &here.at.unknowns.moved(&direction, length, &scales), &scales)
         };
         let mut length = 1.0;
         let mut next = rows_after(length);
+        let falls = |next: &Rows<N>| next.at.error < here.at.error;
+        if old && !falls(&next) {
+            continue;
+        }
+        if here.at.error <= TOLERANCE && !falls(&next) {
+            break;
+        }
         for _ in 0..MAX_HALVINGS {
-            if next.at.error < here.at.error {
+            if falls(&next) {
                 break;
             }
             length *= 0.5;
@@ -114,7 +133,11 @@ fn newton<const N: usize>(step: &Step, support: Support, hang: Option<u16>, star
         if !next.at.error.is_finite() || (next.at.error >= here.at.error && here.at.error <= ACCEPTABLE) {
             break;
         }
+        if next.at.error * (next.at.error / here.at.error) <= ROUNDING {
+            kept = Some(factors);
+        }
         here = next;
+        enough = TOLERANCE;
     }
     Reduced { at: here.at, iterations, converged: here.at.error <= ACCEPTABLE }
 }
@@ -126,17 +149,21 @@ impl Unknowns {
     }
 
     fn moved<const N: usize>(&self, direction: &SVector<f64, N>, length: f64, scales: &Scales<N>) -> Self {
+        let after = |value: f64, i: usize, scale: f64| {
+            let next = value - length * direction[i] * scale;
+            if next.abs() > NOTHING * scale { next } else { 0.0 * next }
+        };
         let mut next = *self;
         for i in 0..3 {
-            next.angular[i] -= length * direction[i] * scales.angular;
+            next.angular[i] = after(self.angular[i], i, scales.angular);
         }
         let points = N.saturating_sub(6);
         for j in 0..points {
-            next.impulses[j] -= length * direction[3 + j] * scales.impulse;
+            next.impulses[j] = after(self.impulses[j], 3 + j, scales.impulse);
         }
         if points > 0 {
             for i in 0..3 {
-                next.friction[i] -= length * direction[3 + points + i] * scales.impulse;
+                next.friction[i] = after(self.friction[i], 3 + points + i, scales.impulse);
             }
         }
         next

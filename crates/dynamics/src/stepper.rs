@@ -1,13 +1,14 @@
 //! The stepper: solves one step after another and advances the state.
 
 use crate::contact::{downward, of_generator};
-use crate::exchange::{Found, Warm, search};
+use crate::exchange::{Found, search};
 use crate::general::{General, REQUIRED};
 use crate::reduced::Unknowns;
 use crate::residual::Rows;
 use crate::rotation::{advance, matrix};
 use crate::solution::set_normal_cone;
 use crate::step::Step;
+use crate::warm::{Trail, Warm};
 use crate::{Adhesion, State, StepSolution, Trial, Vec3};
 use geometry::Support;
 
@@ -32,6 +33,7 @@ pub struct Stepper<'a> {
     done: u64,
     adhesion: Adhesion,
     warm: Warm,
+    trail: Trail,
     solution: StepSolution,
     rows: Rows,
     general: General,
@@ -69,6 +71,7 @@ impl<'a> Stepper<'a> {
             done,
             adhesion,
             warm: Warm { support, unknowns },
+            trail: Trail::none(),
             solution,
             rows: Rows::new(body.surfaces().len()),
             general: General::new(body),
@@ -112,7 +115,10 @@ impl<'a> Stepper<'a> {
         let step = Step::new(self.trial, &self.state, self.time(), &self.adhesion);
         match self.kind {
             SolverKind::Reduced => self.solve_reduced(&step),
-            SolverKind::General => self.general.solve(&step, &self.warm, &mut self.rows, &mut self.solution),
+            SolverKind::General => {
+                self.general.solve(&step, &self.warm, &mut self.rows, &mut self.solution);
+                self.trail.end();
+            }
         }
         let h = self.trial.step();
         self.solution.converged &= h * self.solution.angular.norm() <= MOST_TURN;
@@ -122,17 +128,24 @@ impl<'a> Stepper<'a> {
         self.state.orientation = advance(&self.state.orientation, &self.solution.angular, h);
         self.done += 1;
         self.warm.support = self.solution.support;
+        self.warm.unknowns.angular = self.solution.angular;
         self.settle(self.solution.normal > 0.0);
         &self.solution
     }
 
     fn solve_reduced(&mut self, step: &Step) {
+        if let Some(onward) = self.trail.onward(self.warm.support) {
+            self.warm.unknowns = onward;
+        }
         let found = search(step, &self.warm);
         accept(step, &found, &mut self.solution);
         self.solution.residual = self.rows.residual(step, &self.solution);
         self.warm.unknowns = found.at.unknowns;
         self.solution.converged = found.right && self.solution.residual <= REQUIRED;
-        if !self.solution.converged {
+        if self.solution.converged {
+            self.trail.follow(found.support, &found.at.unknowns);
+        } else {
+            self.trail.end();
             self.solve_again(step);
         }
     }
