@@ -12,6 +12,8 @@ pub struct TorqueLaw {
     weight: f64,
     /// `α`, s: how far into the step the moment is turned, `h/2` for its end and `h/4` for its middle.
     alpha: f64,
+    /// Whether that is its end.
+    at_end: bool,
     /// `M` at the start of the step, A m².
     moment: Vec3,
     /// `B` where the moment is turned to, T.
@@ -24,15 +26,15 @@ impl TorqueLaw {
         match when {
             MagneticTorque::StartOfStep => {
                 let known = moment.cross(&field(t)) * h;
-                Self { known, weight: 0.0, alpha: 0.0, moment, field: Vec3::zeros() }
+                Self { known, weight: 0.0, alpha: 0.0, at_end: false, moment, field: Vec3::zeros() }
             }
             MagneticTorque::EndOfStep => {
-                Self { known: Vec3::zeros(), weight: h, alpha: 0.5 * h, moment, field: field(t + h) }
+                Self { known: Vec3::zeros(), weight: h, alpha: 0.5 * h, at_end: true, moment, field: field(t + h) }
             }
             MagneticTorque::Midpoint => {
                 let back = cayley(&(omega * (-0.25 * h))) * moment;
                 let known = back.cross(&field(t - 0.5 * h)) * (0.5 * h);
-                Self { known, weight: 0.5 * h, alpha: 0.25 * h, moment, field: field(t + 0.5 * h) }
+                Self { known, weight: 0.5 * h, alpha: 0.25 * h, at_end: false, moment, field: field(t + 0.5 * h) }
             }
         }
     }
@@ -49,6 +51,16 @@ impl TorqueLaw {
             return self.known;
         }
         self.known + self.turned(omega).cross(&self.field) * self.weight
+    }
+
+    /// `hT` where the turn `Cay(hω/2)` of the whole step is known: it is that of the moment at the end of the step.
+    #[inline]
+    pub fn impulse_after(&self, turn: &Mat3, omega: &Vec3) -> Vec3 {
+        if self.at_end {
+            self.known + (turn * self.moment).cross(&self.field) * self.weight
+        } else {
+            self.impulse(omega)
+        }
     }
 
     /// `h ∂T/∂ω⁺`. From `d(M × B) = (dφ × M) × B = (M Bᵀ - (M·B) 1) dφ`.

@@ -107,7 +107,7 @@ fn newton<const N: usize>(step: &Step, support: Support, hang: Option<u16>, star
     while here.at.error > enough && iterations < MAX_ITERATIONS {
         iterations += 1;
         let old = kept.is_some();
-        let Some(factors) = kept.take().or_else(|| Factors::of(here.jacobian(step, support, hang, &scales))) else {
+        let Some(factors) = kept.take().or_else(|| Factors::of(&here.jacobian(step, support, hang, &scales))) else {
             break;
         };
         let direction = factors.solve(&here.value);
@@ -184,7 +184,8 @@ impl<const N: usize> Rows<N> {
 
     /// The rows at `x`.
     fn new(step: &Step, support: Support, hang: Option<u16>, x: &Unknowns, scales: &Scales<N>) -> Self {
-        let rotation = cayley(&(x.angular * (0.5 * step.h))) * step.rotation;
+        let turn = cayley(&(x.angular * (0.5 * step.h)));
+        let rotation = turn * step.rotation;
         let points = ContactPoints::new(step.body, support, &rotation);
         let count = Self::POINTS;
 
@@ -193,7 +194,7 @@ impl<const N: usize> Rows<N> {
         let normal: f64 = x.impulses[..count].iter().sum();
         let mut linear = step.state.linear + (step.load + step.pull) / step.mass;
         let change = step.momentum.change(&step.inertia, &x.angular);
-        let mut moment = change - step.torque.impulse(&x.angular) - step.pull_moment;
+        let mut moment = change - step.torque.impulse_after(&turn, &x.angular) - step.pull_moment;
 
         let mut value = SVector::<f64, N>::zeros();
         let mut arm = Vec3::zeros();
@@ -232,17 +233,13 @@ impl<const N: usize> Rows<N> {
             slip = Vec3::new(surface.x, surface.y, x.angular.z);
             let bound = step.friction.of(step.bound_impulse(step.normal_impulse(normal)));
             let rows = FrictionRows::new(&x.friction, &e.component_mul(&slip), bound, step.mass);
-            for i in 0..3 {
-                value[3 + count + i] = rows.value[i] / scales.impulse;
-                error = error.max(rows.value[i].abs() / scales.load);
-            }
+            value.fixed_rows_mut::<3>(3 + count).copy_from(&(rows.value * (1.0 / scales.impulse)));
+            error = error.max(rows.value.amax() / scales.load);
             friction = Some(rows);
         }
 
-        for i in 0..3 {
-            value[i] = moment[i] / scales.moment;
-            error = error.max(moment[i].abs() / (scales.load * step.size));
-        }
+        value.fixed_rows_mut::<3>(0).copy_from(&(moment * (1.0 / scales.moment)));
+        error = error.max(moment.amax() / (scales.load * step.size));
         // `max` passes over NaN, and a point without numbers would count as solved.
         if value.iter().any(|row| row.is_nan()) {
             error = f64::INFINITY;
@@ -276,51 +273,63 @@ impl<const N: usize> Rows<N> {
             let arm_by_angular = arm_by_turn * turn;
 
             // u with ω⁺.
-            let mut slip_by_angular = x.angular.cross_matrix() * arm_by_angular - arm.cross_matrix();
+            let mut slip_by_angular = crossed(&x.angular, &arm_by_angular) - arm.cross_matrix();
             slip_by_angular.set_row(2, &RowVector3::new(0.0, 0.0, 1.0));
             let (by_friction, by_slip, by_bound) = friction.derivatives();
-            let scaled_slip = by_slip * Mat3::from_diagonal(&e);
-            let by_angular = scaled_slip * slip_by_angular * scales.angular / scales.impulse;
+            let scaled_slip = with_columns_scaled(&by_slip, &e);
+            let by_angular = scaled_slip * slip_by_angular * (scales.angular / scales.impulse);
             jacobian.fixed_view_mut::<3, 3>(3 + count, 0).copy_from(&by_angular);
 
-            moment_by_angular += tangential.cross_matrix() * arm_by_angular;
+            moment_by_angular += crossed(&tangential, &arm_by_angular);
+            let (scaled_row, scaled_column) = (scales.angular / scales.length, scales.impulse / scales.moment);
             for (j, by_turn) in turns.iter().enumerate().take(count) {
                 let (y, pj) = (self.points.y[j], x.impulses[j]);
                 let y_by_angular = by_turn * turn;
-                moment_by_angular += Vec3::z().cross_matrix() * y_by_angular * pj;
-                let by_angular = y_by_angular.row(2) * scales.angular / scales.length;
+                moment_by_angular += crossed(&Vec3::z(), &y_by_angular) * pj;
+                let by_angular = y_by_angular.row(2) * scaled_row;
                 jacobian.fixed_view_mut::<1, 3>(3 + j, 0).copy_from(&by_angular);
                 for l in 0..count {
-                    jacobian[(3 + j, 3 + l)] = fall * scales.impulse / scales.length;
+                    jacobian[(3 + j, 3 + l)] = fall * (scales.impulse / scales.length);
                 }
 
                 let mut arm_by_impulse = if supported(*normal, scales) { (y - arm) / *normal } else { Vec3::zeros() };
                 arm_by_impulse.z = -fall;
                 let moment_by_impulse = tangential.cross(&arm_by_impulse) - Vec3::new(y.y, -y.x, 0.0);
-                jacobian
-                    .fixed_view_mut::<3, 1>(0, 3 + j)
-                    .copy_from(&(moment_by_impulse * scales.impulse / scales.moment));
+                jacobian.fixed_view_mut::<3, 1>(0, 3 + j).copy_from(&(moment_by_impulse * scaled_column));
                 let moved = x.angular.cross(&arm_by_impulse);
                 let by_impulse = scaled_slip * Vec3::new(moved.x, moved.y, 0.0) + by_bound * step.friction.slope();
                 jacobian.fixed_view_mut::<3, 1>(3 + count, 3 + j).copy_from(&by_impulse);
             }
 
             // φ enters v through E φ / m, and the moment through r × (p_t, p_o, 0) + p_r n.
-            let by_friction = by_friction + scaled_slip * Mat3::from_diagonal(&Vec3::new(e.x, e.y, 0.0)) / step.mass;
+            let by_friction = by_friction + with_columns_scaled(&scaled_slip, &(Vec3::new(e.x, e.y, 0.0) / step.mass));
             jacobian.fixed_view_mut::<3, 3>(3 + count, 3 + count).copy_from(&by_friction);
             let lever = Mat3::from_columns(&[
-                Vec3::new(0.0, -arm.z, arm.y) * e.x,
-                Vec3::new(arm.z, 0.0, -arm.x) * e.y,
-                Vec3::new(0.0, 0.0, -1.0) * e.z,
+                Vec3::new(0.0, -arm.z, arm.y) * (e.x * scaled_column),
+                Vec3::new(arm.z, 0.0, -arm.x) * (e.y * scaled_column),
+                Vec3::new(0.0, 0.0, -1.0) * (e.z * scaled_column),
             ]);
-            jacobian.fixed_view_mut::<3, 3>(0, 3 + count).copy_from(&(lever * scales.impulse / scales.moment));
+            jacobian.fixed_view_mut::<3, 3>(0, 3 + count).copy_from(&lever);
         } else if let Some(generator) = hang {
             let y_by_turn = turn_of_generator(step.body, generator, rotation, arm);
             moment_by_angular -= Vec3::z().cross_matrix() * y_by_turn * turn * step.adhesion;
         }
-        jacobian.fixed_view_mut::<3, 3>(0, 0).copy_from(&(moment_by_angular * scales.angular / scales.moment));
+        jacobian.fixed_view_mut::<3, 3>(0, 0).copy_from(&(moment_by_angular * (scales.angular / scales.moment)));
         jacobian
     }
+}
+
+/// `[a]ₓ M`, without the zeros of `[a]ₓ`.
+#[inline]
+fn crossed(a: &Vec3, matrix: &Mat3) -> Mat3 {
+    let [x, y, z] = [0, 1, 2].map(|column| a.cross(&matrix.column(column)));
+    Mat3::from_columns(&[x, y, z])
+}
+
+/// `M diag(by)`, without the zeros of `diag(by)`.
+#[inline]
+fn with_columns_scaled(matrix: &Mat3, by: &Vec3) -> Mat3 {
+    Mat3::from_columns(&[matrix.column(0) * by.x, matrix.column(1) * by.y, matrix.column(2) * by.z])
 }
 
 /// Whether there is a normal impulse to share out.

@@ -4,67 +4,78 @@ use nalgebra::{SMatrix, SVector};
 
 /// `P A = L U`, by elimination with partial pivoting.
 pub(super) struct Factors<const N: usize> {
-    /// `U`, and below its diagonal `L`, whose own is 1.
-    matrix: SMatrix<f64, N, N>,
+    /// The columns of `U`, and below its diagonal those of `L`, whose own diagonal is 1.
+    columns: [[f64; N]; N],
     /// The row that each row was swapped with when its turn came.
     pivots: [usize; N],
 }
 
 impl<const N: usize> Factors<N> {
     /// The factors of `matrix`; `None` where a pivot is zero.
-    ///
-    /// Every column is updated over its whole length, with factors of zero where nothing changes: the compiler makes
-    /// vector instructions of loops of a fixed length.
-    pub(super) fn of(mut matrix: SMatrix<f64, N, N>) -> Option<Self> {
-        let mut pivots = [0; N];
-        for i in 0..N {
-            let mut pivot = i;
-            for row in i + 1..N {
-                if matrix[(row, i)].abs() > matrix[(pivot, i)].abs() {
-                    pivot = row;
-                }
-            }
-            if matrix[(pivot, i)] == 0.0 {
-                return None;
-            }
-            pivots[i] = pivot;
-            if pivot != i {
-                matrix.swap_rows(i, pivot);
-            }
-            let inverse = 1.0 / matrix[(i, i)];
-            let mut factors = [0.0; N];
-            for row in i + 1..N {
-                factors[row] = matrix[(row, i)] * inverse;
-                matrix[(row, i)] = factors[row];
-            }
-            for column in i + 1..N {
-                let along = matrix[(i, column)];
-                for row in 0..N {
-                    matrix[(row, column)] -= factors[row] * along;
-                }
+    pub(super) fn of(matrix: &SMatrix<f64, N, N>) -> Option<Self> {
+        const { assert!(N <= 9, "a turn for every column") };
+        let mut factors = Self { columns: matrix.data.0, pivots: [0; N] };
+        // Written out, so that the compiler knows the length of every loop in a turn.
+        let regular = factors.eliminate::<0>()
+            && factors.eliminate::<1>()
+            && factors.eliminate::<2>()
+            && factors.eliminate::<3>()
+            && factors.eliminate::<4>()
+            && factors.eliminate::<5>()
+            && factors.eliminate::<6>()
+            && factors.eliminate::<7>()
+            && factors.eliminate::<8>();
+        regular.then_some(factors)
+    }
+
+    /// The turn of column `I`, where there is one; false where its pivot is zero.
+    #[inline(always)]
+    fn eliminate<const I: usize>(&mut self) -> bool {
+        if I >= N {
+            return true;
+        }
+        let columns = &mut self.columns;
+        let (mut pivot, mut greatest) = (I, columns[I][I].abs());
+        for (row, value) in columns[I].iter().enumerate().skip(I + 1) {
+            if value.abs() > greatest {
+                (pivot, greatest) = (row, value.abs());
             }
         }
-        Some(Self { matrix, pivots })
+        self.pivots[I] = pivot;
+        if pivot != I {
+            columns.iter_mut().for_each(|column| column.swap(I, pivot));
+        }
+        let (done, rest) = columns.split_at_mut(I + 1);
+        let factors = &mut done[I][I..];
+        let inverse = 1.0 / factors[0];
+        factors[1..].iter_mut().for_each(|factor| *factor *= inverse);
+        for column in rest {
+            let along = column[I];
+            column[I..].iter_mut().zip(&*factors).skip(1).for_each(|(value, factor)| *value -= factor * along);
+        }
+        greatest != 0.0
     }
 
     /// `A⁻¹ right`.
     pub(super) fn solve(&self, right: &SVector<f64, N>) -> SVector<f64, N> {
-        let mut x = *right;
+        let mut x = right.data.0[0];
         for (i, &pivot) in self.pivots.iter().enumerate() {
-            x.swap_rows(i, pivot);
+            x.swap(i, pivot);
         }
-        for i in 0..N {
+        for (i, column) in self.columns.iter().enumerate() {
+            let along = x[i];
             for row in i + 1..N {
-                x[row] -= self.matrix[(row, i)] * x[i];
+                x[row] -= column[row] * along;
             }
         }
-        for i in (0..N).rev() {
-            x[i] /= self.matrix[(i, i)];
+        for (i, column) in self.columns.iter().enumerate().rev() {
+            x[i] /= column[i];
+            let along = x[i];
             for row in 0..i {
-                x[row] -= self.matrix[(row, i)] * x[i];
+                x[row] -= column[row] * along;
             }
         }
-        x
+        SVector::from(x)
     }
 }
 
@@ -85,7 +96,7 @@ mod tests {
                 matrix[(i, i)] = 0.0;
                 matrix[((i + 3) % 8, i)] += 2.0;
             }
-            let factors = Factors::of(matrix).expect("a regular matrix");
+            let factors = Factors::of(&matrix).expect("a regular matrix");
             for right in rights {
                 let right = SVector::from_column_slice(&right);
                 let x = factors.solve(&right);
@@ -96,6 +107,6 @@ mod tests {
 
     #[test]
     fn a_singular_matrix_has_none() {
-        assert!(Factors::of(SMatrix::<f64, 3, 3>::from_element(1.0)).is_none());
+        assert!(Factors::of(&SMatrix::<f64, 3, 3>::from_element(1.0)).is_none());
     }
 }
