@@ -5,7 +5,7 @@
 //! ```
 
 use crate::StepSolution;
-use crate::problem::{FREE, StepProblem};
+use crate::problem::{ACTIVE, FREE, StepProblem};
 use crate::step::Step;
 
 /// Storage for the rows of the unreduced problem of one body.
@@ -48,22 +48,24 @@ impl Rows {
         let sigma = z[slip];
         let mut worst: f64 = 0.0;
         let mut hold = |value: f64| worst = if value.is_nan() { f64::INFINITY } else { worst.max(value.abs()) };
-        for i in 0..3 {
-            hold(out[i] / p);
-            hold(out[3 + i] / p);
-            hold(out[6 + i]);
-            hold(out[9 + i] / z[plane].max(f64::MIN_POSITIVE));
-            hold(out[12 + i] / (p * u.max(sigma)));
+        hold(greatest(&out[0..6]) / p);
+        hold(greatest(&out[6..9]));
+        hold(greatest(&out[9..12]) / z[plane].max(f64::MIN_POSITIVE));
+        hold(greatest(&out[12..15]) / (p * u.max(sigma)));
+        // The row that makes k active, and the pairs of every l; l_k is among them, as in the paper.
+        hold(out[ACTIVE]);
+        for (multiplier, row) in z[ACTIVE..=plane].iter().zip(&out[ACTIVE..=plane]) {
+            hold(multiplier.min(*row));
         }
-        // The paper's pair of l_k, and the row that makes k active.
-        hold(out[problem.slot(solution.active)]);
-        for i in 0..problem.surfaces() {
-            let slot = problem.slot(i);
-            hold(z[slot].min(out[slot]));
-        }
-        hold(z[plane].min(out[plane]));
         hold((sigma / u).min(out[slip] / (p * p)));
         hold((z[normal] / p).min(out[normal]));
         worst
     }
+}
+
+/// The greatest magnitude, infinite where a number is none. Rows that are over one scale are divided together by this.
+#[inline]
+fn greatest(rows: &[f64]) -> f64 {
+    let worst = rows.iter().fold(0.0, |worst: f64, row| if row.abs() > worst { row.abs() } else { worst });
+    if rows.iter().sum::<f64>().is_nan() { f64::INFINITY } else { worst }
 }
