@@ -1,4 +1,4 @@
-//! A step allocates nothing.
+//! A step allocates nothing, and neither does a run that keeps its metrics only.
 #![allow(unsafe_code)] // a counting allocator can be written in no other way
 
 mod common;
@@ -6,10 +6,12 @@ mod common;
 use common::*;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
-use tumblers_dynamics::{SolverKind, Stepper, Trial};
+use tumblers_dynamics::batch::{Control, sweep};
+use tumblers_dynamics::{Outcome, SolverKind, Stepper, Trial};
 
 thread_local! {
     static COUNT: Cell<u64> = const { Cell::new(0) };
+    static BYTES: Cell<usize> = const { Cell::new(0) };
 }
 
 struct Counting;
@@ -17,6 +19,7 @@ struct Counting;
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         COUNT.with(|count| count.set(count.get() + 1));
+        BYTES.with(|bytes| bytes.set(bytes.get() + layout.size()));
         unsafe { System.alloc(layout) }
     }
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
@@ -43,4 +46,23 @@ fn a_run_allocates_nothing_after_its_start() {
         }
         assert_eq!(COUNT.with(Cell::get) - before, 0);
     }
+}
+
+/// One thread is the thread that counts.
+#[test]
+fn a_run_that_keeps_its_metrics_takes_the_same_memory_for_a_hundred_times_the_steps() {
+    let taken = |duration: f64| {
+        let mut parts = cuboid_on_paper(0.01, 10.0);
+        parts.duration = duration;
+        let trials = [Trial::new(parts).unwrap()];
+        let before = BYTES.with(Cell::get);
+        let outcomes = sweep(&trials, 1, &Control::default()).unwrap();
+        assert!(matches!(outcomes[0], Outcome::Done(_)));
+        (trials[0].steps(), BYTES.with(Cell::get) - before)
+    };
+    // The general solver's kernels keep a buffer for each thread, which its first solver makes.
+    taken(0.05);
+    let (few, least) = taken(0.05);
+    let (many, most) = taken(5.0);
+    assert_eq!((many, most), (100 * few, least));
 }
