@@ -9,7 +9,7 @@ SOURCES := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Carg
 # One interpreter for every cargo call, or pyo3 would be built again for each other one that it finds.
 export PYO3_PYTHON := $(abspath $(BIN)/python)
 
-.PHONY: sweep test lint rust-test python-test dozen fuzz bench peers wheel deny deny-locked clean
+.PHONY: sweep test lint rust-test python-test dozen fuzz bench peers accuracy wheel deny deny-locked clean
 
 sweep: $(VENV)/installed
 	$(BIN)/tumblers sweep --robot spiked --out sweep-spiked.nc --plot sweep-spiked.png
@@ -61,6 +61,10 @@ deny-locked:
 peers: $(VENV)/installed $(VENV)/comparing
 	$(BIN)/python benches/against_mujoco.py --page docs/performance.md
 	$(BIN)/python benches/against_drake.py --page docs/performance.md
+
+# Which step, and which treatment of the torque: a quarter of an hour of one core.
+accuracy: $(VENV)/installed
+	$(BIN)/python benches/time_to_accuracy.py --page docs/performance.md
 
 $(BIN)/maturin:
 	@command -v $(PYTHON) >/dev/null || { \

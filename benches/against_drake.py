@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import sys
 
-from peers.command import Peer, run
+from peers.command import Measurement, run
 
 
 def main() -> int:
     """Run the command, and return its exit code."""
-    return run(sys.argv[1:], Peer("pydrake", "drake", "drake", "peers.drake_comparison", "peers.drake_page"))
+    summary = "Compare our steps per second and our contact with those of pydrake."
+    return run(
+        sys.argv[1:], Measurement(summary, "pydrake", "drake", "drake", "peers.drake_comparison", "peers.drake_page")
+    )
 
 
 if __name__ == "__main__":

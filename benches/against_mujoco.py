@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import sys
 
-from peers.command import Peer, run
+from peers.command import Measurement, run
 
 
 def main() -> int:
     """Run the command, and return its exit code."""
-    return run(sys.argv[1:], Peer("mujoco", "mujoco", "mujoco", "peers.mujoco_comparison", "peers.mujoco_page"))
+    summary = "Compare our steps per second and our contact with those of mujoco."
+    return run(
+        sys.argv[1:], Measurement(summary, "mujoco", "mujoco", "mujoco", "peers.mujoco_comparison", "peers.mujoco_page")
+    )
 
 
 if __name__ == "__main__":

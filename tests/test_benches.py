@@ -14,6 +14,12 @@ import pytest
 BENCHES = Path(__file__).parents[1] / "benches"
 sys.path.insert(0, str(BENCHES))
 
+from accuracy.case import AccuracyCase, cases  # noqa: E402
+from accuracy.comparison import compare as accuracies  # noqa: E402
+from accuracy.ladder import Ladder, ladder  # noqa: E402
+from accuracy.page import lines as accuracy_lines  # noqa: E402
+from accuracy.page import section as accuracy_section  # noqa: E402
+from accuracy.price import Price, grouped  # noqa: E402
 from peers import units  # noqa: E402
 from peers.case import STEP_S, at_rest, in_flight, on_slope, sliding, tumbling  # noqa: E402
 from peers.clock import Contestant, Sample, alternate, microseconds, ratio  # noqa: E402
@@ -23,6 +29,8 @@ from peers.ours import Health, line_contact, recorded  # noqa: E402
 from peers.page import SECTIONS, with_section, written_page  # noqa: E402
 from peers.target import Target  # noqa: E402
 from peers.track import Track, longest_stretch, lowest_m  # noqa: E402
+
+from tumblers.metrics import Metrics, Yardstick  # noqa: E402
 
 ROBOTS = {case.name: case for case in tumbling()}
 
@@ -194,6 +202,68 @@ def test_a_target_is_met_on_its_own_side():
     assert Target("", 3.0, 2.9, False, disturbed=True).verdict == "**missed**, while other work ran"
 
 
+# Time to accuracy
+
+
+def a_ladder(start, end, midpoint):
+    """Return a ladder whose runs have these speeds, m/s, over a second and a perimeter of a millimetre."""
+    runs = {
+        torque: [None if v is None else Metrics(speed_m_per_s=v, drift_m=0.0, twist_deg=0.0) for v in speeds]
+        for torque, speeds in (("start_of_step", start), ("end_of_step", end), ("midpoint", midpoint))
+    }
+    steps = tuple(1e-3 / 2**n for n in range(len(midpoint)))
+    return Ladder(cases(["cuboid"], [1.0])[0], steps, runs, Yardstick(duration_s=1.0, way_m=1e-3))
+
+
+def test_the_longest_step_is_the_one_from_which_on_all_are_accurate():
+    found = a_ladder([None, 1.02, 1.002, 1.001], [0.9, 0.9, 0.9, 0.9], [1.0, 1.05, 1.001, 1.0])
+    # A value that is right by chance, 1 ms, does not count; nor does a scheme that stays where it is.
+    assert found.longest_step_s("midpoint") == 2.5e-4
+    assert found.longest_step_s("start_of_step") == 2.5e-4
+    assert found.longest_step_s("end_of_step") is None
+    # Halving shows nothing of the error where the value stays.
+    assert [step for step, _, _ in found.hidden("end_of_step")] == [1e-3, 5e-4, 2.5e-4]
+    # Two finest of the start, two before the finest of the midpoint: 5 %.
+    assert found.known_to == pytest.approx(0.05)
+    assert not found.is_known
+    assert a_ladder([1.0] * 4, [0.9] * 4, [1.3, 1.001, 1.0, 1.0]).is_known
+
+
+def test_what_does_not_get_there_is_not_the_cheapest_but_counts():
+    prices = {
+        "end_of_step": Price(None, 1.0),
+        "start_of_step": Price(1e-4, 4.0),
+        "midpoint": Price(2e-4, 2.0),
+    }
+    found = grouped("all", [prices, prices])
+    assert found.reached == {"end_of_step": 0, "start_of_step": 2, "midpoint": 2}
+    assert found.cheapest == {"end_of_step": 0, "start_of_step": 0, "midpoint": 2}
+    assert found.over_cheapest["start_of_step"] == pytest.approx(2.0)
+
+
+def test_a_ladder_leaves_out_steps_that_the_period_does_not_allow():
+    case = AccuracyCase("cuboid", 100.0, False, cases(["cuboid"], [100.0])[0].scenario)
+    assert ladder(case, (2e-3, 5e-4, 2.5e-4)).steps_s == (5e-4, 2.5e-4)
+
+
+def test_a_small_run_of_time_to_accuracy():
+    told = []
+    results = accuracies(
+        1, lambda *what: told.append(what), ["spiked, half size"], [1.0], tuple(5e-4 / 2**n for n in range(5))
+    )
+    perfect, made = results.rows
+    assert (perfect.ladder.case.errors, made.ladder.case.errors) == (False, True)
+    # docs/studies.md: 1092.8 µm/s converged, and the released step's is right already.
+    assert perfect.ladder.converged.speed_m_per_s == pytest.approx(1092.8e-6, rel=1e-3)
+    assert perfect.prices["end_of_step"].step_s == 5e-4
+    assert all(price.ms_per_s > 0.0 for price in perfect.prices.values())
+    found = json.loads(json.dumps(results.to_json()))
+    assert len(found["cases"]) == 2
+    assert accuracy_section(results).startswith("## Time to accuracy")
+    assert all(line.count("\n") == 0 for line in accuracy_lines(results))
+    assert {phase for phase, _, _ in told} == {"steps", "times"}
+
+
 # The page
 
 
@@ -236,8 +306,9 @@ def test_a_peer_that_is_missing_is_named_in_one_line(command, module, tmp_path):
         (["--jsn", "x"], "unrecognized arguments: --jsn x"),
     ],
 )
-def test_an_option_that_is_refused_is_told_in_one_line(arguments, said):
-    found = run("against_mujoco.py", *arguments)
+@pytest.mark.parametrize("command", ["against_mujoco.py", "time_to_accuracy.py"])
+def test_an_option_that_is_refused_is_told_in_one_line(command, arguments, said):
+    found = run(command, *arguments)
     assert (found.returncode, found.stdout) == (2, "")
     assert said in found.stderr
     assert found.stderr.count("\n") == 1

@@ -1,4 +1,4 @@
-"""What both commands do alike: options, refusals, files. Imports nothing that may be missing before it has looked."""
+"""What all commands do alike: options, refusals, files. Imports nothing that may be missing before it has looked."""
 
 from __future__ import annotations
 
@@ -12,28 +12,31 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NoReturn
 
-__all__ = ["REFUSED", "Options", "Peer", "run"]
+__all__ = ["REFUSED", "Measurement", "Options", "run"]
 
 REFUSED = 2
 _REPETITIONS = 5
 
 
 @dataclass(frozen=True)
-class Peer:
-    """What this package is compared with.
+class Measurement:
+    """What is measured.
 
     Attributes
     ----------
+    summary
+        In a sentence.
     module, distribution
-        The module that it needs, and what installs it.
+        The module that it needs beside this package, and what installs it; None where it needs none.
     section
         Its section of the page.
     comparison, page
         Modules that measure and that write; imported only once all that they need is known to be there.
     """
 
-    module: str
-    distribution: str
+    summary: str
+    module: str | None
+    distribution: str | None
     section: str
     comparison: str
     page: str
@@ -48,18 +51,21 @@ class Options:
     repetitions: int
 
 
-def run(arguments: Sequence[str], peer: Peer) -> int:
+def run(arguments: Sequence[str], measurement: Measurement) -> int:
     """Run a comparison, write what was asked for, and return the exit code.
 
     Parameters
     ----------
     arguments
         Of the command line.
-    peer
-        What this package is compared with.
+    measurement
+        What is measured.
     """
-    options = _options(arguments, f"Compare our steps per second and our contact with those of {peer.module}.")
-    for module, install in (("tumblers", "make .venv/installed"), (peer.module, f"pip install {peer.distribution}")):
+    options = _options(arguments, measurement.summary)
+    needed = [("tumblers", "make .venv/installed")]
+    if measurement.module is not None:
+        needed.append((measurement.module, f"pip install {measurement.distribution}"))
+    for module, install in needed:
         if find_spec(module) is None:
             return _refuse(f"found no module {module}, expected it to be installed: {install}")
     from tumblers.atomic import write_files
@@ -75,19 +81,19 @@ def run(arguments: Sequence[str], peer: Peer) -> int:
         if options.page is not None:
             output_file("--page", options.page, (".md",), [])
             # A page that cannot be read is refused now, and not after minutes.
-            written_page(options.page, peer.section, "")
+            written_page(options.page, measurement.section, "")
     except InputError as error:
         return _refuse(str(error))
     except (OSError, ValueError) as error:
         return _refuse(f"--page: found {unreadable(error)}, expected a page that can be read")
-    comparison, page = import_module(peer.comparison), import_module(peer.page)
+    comparison, page = import_module(measurement.comparison), import_module(measurement.page)
     with phases(True) as tell:
         results = comparison.compare(options.repetitions, tell)
     contents: dict[Path, bytes | memoryview] = {}
     if options.json is not None:
         contents[options.json] = (json.dumps(results.to_json(), indent=2, ensure_ascii=False) + "\n").encode()
     if options.page is not None:
-        contents[options.page] = written_page(options.page, peer.section, page.section(results))
+        contents[options.page] = written_page(options.page, measurement.section, page.section(results))
     sys.stdout.write("".join(f"{line}\n" for line in page.lines(results)))
     try:
         write_files(contents)

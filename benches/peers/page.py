@@ -1,4 +1,4 @@
-"""The page that each comparison writes its own section of."""
+"""The page that each command writes its own section of."""
 
 from __future__ import annotations
 
@@ -9,11 +9,15 @@ __all__ = ["SECTIONS", "table", "with_section", "written_page"]
 
 _HEADER = """# Performance
 
-Written by the two commands of the sections below, each its own section, and not by hand. A figure is a ratio of
+Written by the commands of the sections below, each its own section, and not by hand. A figure is a ratio of
 alternating repetitions in one run on one machine, or says what else it is; a target that is missed is called missed.
 The benchmarks of the crates alone are in [benches/README.md](../benches/README.md)."""
 # Name of the section, in the order of the page: what writes it.
-SECTIONS = {"mujoco": "python benches/against_mujoco.py", "drake": "python benches/against_drake.py"}
+SECTIONS = {
+    "mujoco": "python benches/against_mujoco.py",
+    "drake": "python benches/against_drake.py",
+    "accuracy": "python benches/time_to_accuracy.py",
+}
 
 
 def _begin(name: str) -> str:

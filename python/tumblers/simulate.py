@@ -11,15 +11,15 @@ import xarray as xr
 
 from . import _core
 from .check import choice
+from .metrics import FLIP_DEG
 from .progress import OnProgress, native_call
 from .scenario import Scenario
 from .version import __version__
 
-__all__ = ["CONTACT_MODES", "FLIP_DEG", "Solver", "simulate"]
+__all__ = ["CONTACT_MODES", "Solver", "simulate"]
 
 Solver = Literal["reduced", "general"]
 CONTACT_MODES = ("airborne", "point", "line", "surface")
-FLIP_DEG = 45.0
 
 # name: (dimensions, units, meaning)
 _VARIABLES: dict[str, tuple[tuple[str, ...], str, str]] = {

@@ -19,11 +19,11 @@ from .effects.catalogue import sources_of
 from .errors import InputError, TumblersError, show
 from .field import RotatingField
 from .grid import PAPER_DRAFTS_DEG, PAPER_MAGNETIZATION_DEG
+from .metrics import FLIP_DEG
 from .parts import Parts
 from .progress import OnProgress, native_call
 from .scenario import Scenario
 from .shape import Cuboid, Spiked, SpikedEnds
-from .simulate import FLIP_DEG
 from .version import __version__
 
 __all__ = [

@@ -13,9 +13,9 @@ from .. import _core
 from ..check import thread_count
 from ..errors import InputError, TumblersError, show
 from ..field import RotatingField
+from ..metrics import FLIP_DEG
 from ..progress import OnProgress
 from ..scenario import Scenario
-from ..simulate import FLIP_DEG
 
 __all__ = ["Native", "Outcomes", "Way", "rotating", "threads_of"]
 

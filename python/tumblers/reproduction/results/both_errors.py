@@ -10,9 +10,9 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ...grid import PAPER_DRAFTS_DEG, PAPER_MAGNETIZATION_DEG
+from ...metrics import FLIP_DEG
 from ...plots import plot_map
 from ...progress import OnProgress
-from ...simulate import FLIP_DEG
 from ..choice import Choices
 from ..claim import Claim
 from ..paper_result import PaperResult

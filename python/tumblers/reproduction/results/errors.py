@@ -9,9 +9,9 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from ...grid import PAPER_DRAFTS_DEG
+from ...metrics import FLIP_DEG
 from ...presets import DRIVES
 from ...progress import OnProgress
-from ...simulate import FLIP_DEG
 from ...sweep import DRIFT_LIMIT_M, sweep
 from ..choice import Choices
 from ..claim import Claim, Measure

@@ -14,8 +14,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
+from ...metrics import FLIP_DEG
 from ...plots.style import PER_METRE, RED, legend_above, on_white, titled_figure
-from ...simulate import FLIP_DEG
 from ..tolerance import PAPER_DRAFT_DEG, PAPER_THETA2_DEG
 
 __all__ = ["plot_tolerance"]

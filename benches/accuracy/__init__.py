@@ -1,0 +1,1 @@
+"""Time to accuracy: cases, ladders of steps, times and the page."""
