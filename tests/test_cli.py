@@ -151,13 +151,13 @@ def test_unconverged_steps_get_one_line(monkeypatch: pytest.MonkeyPatch) -> None
 
     scenario = preset_scenario("spiked", duration_s=0.01)
     run = tumblers.simulate(scenario)
-    assert run_warnings(run, scenario.run.steps) == []
+    assert run_warnings(run) == []
     run.attrs |= {"unconverged_steps": 3, "max_residual": 0.25}
     expected = "3 of 20 steps did not converge (largest residual 2.5e-01): the results there are not solutions"
-    assert run_warnings(run, scenario.run.steps) == [expected]
+    assert run_warnings(run) == [expected]
     sweep = tumblers.sweep(scenario, drafts_deg=[0.0, 80.0], magnetization=[(0.0, 0.0)])
     sweep["unconverged_steps"].values[0, 0] = 3
-    first, second = sweep_warnings(sweep, scenario.run.steps)
+    first, second = sweep_warnings(sweep)
     assert first.startswith("3 of 20 steps did not converge")
     assert second.startswith("1 of 2 cases failed, the first: robot.draft_deg")
 

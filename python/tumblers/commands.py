@@ -120,17 +120,16 @@ def simulate(
     choice("--solver", solver, ("reduced", "general"))
     load_effect_files(effects)
     loaded = Scenario.load(scenario)
-    with _of_file(scenario):
-        loaded.run.check_rows()
     from .simulate import simulate as run_scenario
     from .summary import run_summary, run_warnings
 
     start = perf_counter()
-    result = run_scenario(loaded, solver, progress=True)  # type: ignore[arg-type]
+    with _of_file(scenario):
+        result = run_scenario(loaded, solver, progress=True)  # type: ignore[arg-type]
     seconds = perf_counter() - start
     _write(result, out, plot, pictures)
     typer.echo(run_summary(result, seconds))
-    _warn(run_warnings(result, loaded.run.steps))
+    _warn(run_warnings(result))
 
 
 @app.command()
@@ -198,7 +197,7 @@ def sweep(
             _write(result, out, plot)
     kept.discard()
     typer.echo(sweep_summary(result, seconds))
-    _warn(sweep_warnings(result, scenario.run.steps))
+    _warn(sweep_warnings(result))
 
 
 @app.command()

@@ -18,6 +18,7 @@ from .run import Run
 from .scenario import Scenario
 from .shape import Cuboid, Curved, Ellipsoid, Hull, Shape, Spiked, SpikedEnds
 from .simulate import simulate
+from .step_choice import StepChoice, choose_step
 from .substrate import Substrate
 from .surroundings import Surroundings
 from .sweep import faster_cases, ideal_speed, preferred_cases, sweep
@@ -59,12 +60,14 @@ __all__ = [
     "Spiked",
     "SpikedEnds",
     "StaticField",
+    "StepChoice",
     "Substrate",
     "Surroundings",
     "TableField",
     "TumblersError",
     "__version__",
     "blind",
+    "choose_step",
     "climb",
     "convergence",
     "dataset",

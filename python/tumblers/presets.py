@@ -13,7 +13,7 @@ from .errors import InputError, show
 from .field import RotatingField
 from .model import Model
 from .robot import Robot
-from .run import Run
+from .run import Run, StepLength
 from .scenario import Scenario
 from .shape import Cuboid, Curved, Shape, Spiked, SpikedEnds
 from .substrate import Substrate
@@ -166,7 +166,7 @@ def preset_scenario(
     drive: str | RotatingField | None = None,
     incline_deg: float | None = None,
     duration_s: float | None = None,
-    step_s: float = 5.0e-4,
+    step_s: StepLength = 5.0e-4,
     model: Model | None = None,
 ) -> Scenario:
     """Return a scenario of the paper by name.
@@ -180,7 +180,7 @@ def preset_scenario(
     incline_deg, duration_s
         Incline, degrees (0 without an experiment), and time, s (1 without an experiment).
     step_s
-        Step, s; 5·10⁻⁴ as released.
+        Step, s, or ``"auto"``; 5·10⁻⁴ as released.
     model
         Switches of the model; the defaults take the torque at the end of the step, as released.
 

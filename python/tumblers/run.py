@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import ceil
+from typing import Literal
 
 from .check import number
 from .errors import InputError, show
 
-__all__ = ["MOST_STEPS", "Run"]
+__all__ = ["AUTO", "MOST_STEPS", "Run", "StepLength"]
 
+StepLength = float | Literal["auto"]
+
+AUTO: Literal["auto"] = "auto"
 MOST_STEPS = 1e9
 _WHOLE = 1e-6
 _ROUNDING = 1e-9
@@ -23,14 +27,16 @@ class Run:
 
     Attributes
     ----------
-    duration_s, step_s
-        Time of the run and of one step, s. A duration that is not a whole number of steps is covered in whole steps.
+    duration_s
+        Time of the run, s. One that is not a whole number of steps is covered in whole steps.
+    step_s
+        Time of one step, s; ``"auto"`` for one that `tumblers.choose_step` chooses by an error estimate before the run.
     incline_deg
         Slope of the substrate along +y, degrees.
     side_incline_deg
         Slope of the substrate along +x, degrees.
     output_every_s
-        Time between two rows of the result, a multiple of the step, s; every step if None.
+        Time between two rows of the result, a multiple of the step, s; every step if None. A step is chosen to fit it.
     gravity_m_per_s2
         g, m/s².
 
@@ -41,7 +47,7 @@ class Run:
     """
 
     duration_s: float
-    step_s: float
+    step_s: StepLength
     incline_deg: float = 0.0
     output_every_s: float | None = None
     gravity_m_per_s2: float = 9.8
@@ -52,34 +58,54 @@ class Run:
             object.__setattr__(self, name, value)
 
         put("duration_s", number("run.duration_s", self.duration_s, above=0.0))
-        put("step_s", number("run.step_s", self.step_s, above=0.0))
         for name in ("incline_deg", "side_incline_deg"):
             put(name, number(f"run.{name}", getattr(self, name), above=-90.0, below=90.0))
         put("gravity_m_per_s2", number("run.gravity_m_per_s2", self.gravity_m_per_s2, least=0.0))
-        ratio = self.duration_s / self.step_s
-        if self.step_s > self.duration_s:
-            raise InputError("run.step_s", show(self.step_s), f"at most duration_s, which is {self.duration_s:g}")
-        if ratio > MOST_STEPS:
-            found = f"{self.duration_s:g} s in steps of {self.step_s:g} s"
-            raise InputError("run.duration_s", found, f"at most {MOST_STEPS:g} steps")
         if self.output_every_s is not None:
             put("output_every_s", number("run.output_every_s", self.output_every_s, above=0.0))
-            every = self.output_every_s / self.step_s
-            if self.output_every_s > self.duration_s:
-                expected = f"at most duration_s, which is {self.duration_s:g}"
-                raise InputError("run.output_every_s", show(self.output_every_s), expected)
+        if isinstance(self.step_s, str):
+            if self.step_s != AUTO:
+                raise InputError("run.step_s", show(self.step_s), f"'{AUTO}' or a finite number greater than 0")
+        else:
+            put("step_s", number("run.step_s", self.step_s, above=0.0))
+            self._check_step(self.fixed_step_s)
+        if self.output_every_s is not None and self.output_every_s > self.duration_s:
+            expected = f"at most duration_s, which is {self.duration_s:g}"
+            raise InputError("run.output_every_s", show(self.output_every_s), expected)
+
+    def _check_step(self, step_s: float) -> None:
+        if step_s > self.duration_s:
+            raise InputError("run.step_s", show(step_s), f"at most duration_s, which is {self.duration_s:g}")
+        if self.duration_s / step_s > MOST_STEPS:
+            found = f"{self.duration_s:g} s in steps of {step_s:g} s"
+            raise InputError("run.duration_s", found, f"at most {MOST_STEPS:g} steps")
+        if self.output_every_s is not None and self.output_every_s <= self.duration_s:
+            every = self.output_every_s / step_s
             if round(every) < 1 or abs(every - round(every)) > _WHOLE * every:
-                raise InputError("run.output_every_s", show(self.output_every_s), f"a multiple of step_s {self.step_s}")
+                raise InputError("run.output_every_s", show(self.output_every_s), f"a multiple of step_s {step_s}")
+
+    @property
+    def fixed_step_s(self) -> float:
+        """The step, s.
+
+        Raises
+        ------
+        InputError
+            A step that is still to be chosen.
+        """
+        if isinstance(self.step_s, str):
+            raise InputError("run.step_s", show(self.step_s), "a number here: choose_step finds one")
+        return self.step_s
 
     @property
     def steps(self) -> int:
         """Number of steps: the duration is covered in whole steps, and a rounding beyond its end is not another one."""
-        return max(1, ceil(self.duration_s / self.step_s - _ROUNDING))
+        return max(1, ceil(self.duration_s / self.fixed_step_s - _ROUNDING))
 
     @property
     def output_every(self) -> int:
         """Number of steps between two rows of the result."""
-        return 1 if self.output_every_s is None else round(self.output_every_s / self.step_s)
+        return 1 if self.output_every_s is None else round(self.output_every_s / self.fixed_step_s)
 
     @property
     def rows(self) -> int:

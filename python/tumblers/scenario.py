@@ -17,10 +17,10 @@ from .core_errors import core_error
 from .errors import InputError, show, unreadable
 from .field import Field, RotatingField, TableField, field_from_table, field_to_table
 from .initial import Initial
-from .model import Model
+from .model import MagneticTorque, Model
 from .relief import Relief
 from .robot import Robot
-from .run import Run
+from .run import AUTO, Run
 from .section import as_section, known_keys, read_section, write_entry, write_section
 from .substrate import Substrate
 from .surroundings import Surroundings
@@ -90,9 +90,9 @@ class Scenario:
         object.__setattr__(self, "effects", _checked_effects(self.effects))
         if isinstance(self.field, TableField):
             self.field.covers(self.run.duration_s)
-        if isinstance(self.field, RotatingField):
+        if isinstance(self.field, RotatingField) and self.run.step_s != AUTO:
             longest = 1.0 / (_STEPS_PER_CYCLE * self.field.frequency_Hz)
-            if self.run.step_s > longest * (1.0 + 1e-9):
+            if self.run.fixed_step_s > longest * (1.0 + 1e-9):
                 cycle = f"1/{_STEPS_PER_CYCLE} of the field's period at {self.field.frequency_Hz:g} Hz"
                 raise InputError("run.step_s", show(self.run.step_s), f"at most {longest:g} s, {cycle}")
 
@@ -154,7 +154,7 @@ class Scenario:
             camera=read_section(Camera, "camera", table.get("camera", {})),
             effects=_effects_from(table["effect"]) if "effect" in table else (),
         )
-        scenario.trial()
+        scenario.check()
         return scenario
 
     def to_toml(self) -> str:
@@ -202,6 +202,48 @@ class Scenario:
             scenario = effect.edit(scenario)
         return replace(scenario, effects=()) if scenario.effects else scenario
 
+    @property
+    def longest_step_s(self) -> float:
+        """The longest step that the time of the run and a rotating field's period allow, s."""
+        longest = self.run.duration_s
+        if isinstance(self.field, RotatingField):
+            longest = min(longest, 1.0 / (_STEPS_PER_CYCLE * self.field.frequency_Hz))
+        return longest
+
+    def at_step(self, step_s: float, magnetic_torque: MagneticTorque | None = None) -> Scenario:
+        """Return the scenario with another step.
+
+        Parameters
+        ----------
+        step_s
+            Step, s.
+        magnetic_torque
+            Another time in the step for the torque, too; as it is if None.
+
+        Raises
+        ------
+        InputError
+            A step that is refused.
+        """
+        model = self.model if magnetic_torque is None else replace(self.model, magnetic_torque=magnetic_torque)
+        return replace(self, run=replace(self.run, step_s=step_s), model=model)
+
+    def check(self) -> None:
+        """Refuse what only the parts together show; a step that is still to be chosen is not among it.
+
+        Raises
+        ------
+        InputError
+            As `trial` does.
+        """
+        if self.run.step_s != AUTO:
+            self.trial()
+            return
+        # The scheme that bears every step.
+        effective = self.effective()
+        unsampled = replace(effective, run=replace(effective.run, output_every_s=None))
+        unsampled.at_step(effective.longest_step_s, "midpoint").trial()
+
     def trial(self) -> _core.Trial:
         """Return the native trial of the effective scenario.
 
@@ -231,7 +273,7 @@ class Scenario:
                 side_incline_rad=radians(run.side_incline_deg),
                 gravity_m_per_s2=run.gravity_m_per_s2,
                 duration_s=run.duration_s,
-                step_s=run.step_s,
+                step_s=run.fixed_step_s,
                 magnetic_torque=model.magnetic_torque,
                 adhesion_acts_at=model.adhesion_acts_at,
                 adhesion_enters=model.adhesion_enters,

@@ -14,6 +14,7 @@ from .check import choice
 from .metrics import FLIP_DEG
 from .progress import OnProgress, native_call
 from .scenario import Scenario
+from .step_choice import with_chosen_step
 from .version import __version__
 
 __all__ = ["CONTACT_MODES", "Solver", "simulate"]
@@ -60,7 +61,9 @@ def simulate(scenario: Scenario, solver: Solver = "reduced", progress: bool | On
         A row for the start, every ``output_every_s`` and the end: dimensions ``time`` (coordinate in s), ``axis``
         (x, y, z), ``wxyz`` and ``tor`` (t, o, r), every variable with its units. Attributes: the scenario's TOML;
         ``twist_deg`` and ``drift_m`` after one cycle of the field (NaN if there is none), ``flipped``,
-        ``speed_m_per_s``, ``unconverged_steps``, ``max_residual``, ``max_penetration_m``.
+        ``speed_m_per_s``, ``steps``, ``unconverged_steps``, ``max_residual``, ``max_penetration_m``. Where the scenario
+        left the step to be chosen: ``step_s``, ``step_error``, its error estimate as a share, and ``step_met``, whether
+        that is at most 1 %; the scenario's TOML has the step as a number.
 
     Raises
     ------
@@ -70,6 +73,7 @@ def simulate(scenario: Scenario, solver: Solver = "reduced", progress: bool | On
         The motion diverged, or the native module gave up.
     """
     choice("solver", solver, get_args(Solver))
+    scenario, chosen = with_chosen_step(scenario, progress=progress is True)
     scenario.run.check_rows()
     trial = scenario.trial()
     with native_call("steps", trial.steps, progress) as on_progress:
@@ -84,7 +88,7 @@ def simulate(scenario: Scenario, solver: Solver = "reduced", progress: bool | On
         name: (dims, run[name], {"units": units, "long_name": meaning, **_SPECIAL.get(name, {})})
         for name, (dims, units, meaning) in _VARIABLES.items()
     }
-    return xr.Dataset(variables, coordinates, attrs=_attributes(scenario, solver, run))
+    return xr.Dataset(variables, coordinates, attrs=_attributes(scenario, solver, run) | chosen)
 
 
 def _attributes(scenario: Scenario, solver: Solver, run: Mapping[str, Any]) -> dict[str, Any]:
@@ -98,6 +102,7 @@ def _attributes(scenario: Scenario, solver: Solver, run: Mapping[str, Any]) -> d
         "drift_m": float(run["drift_m"]),
         "speed_m_per_s": float(run["speed_m_per_s"]),
         "flipped": int(abs(twist) > FLIP_DEG),
+        "steps": scenario.run.steps,
         "unconverged_steps": int(run["unconverged_steps"]),
         "max_residual": float(run["max_residual"]),
         "max_penetration_m": float(run["max_penetration_m"]),

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from .simulate import CONTACT_MODES
+from .step_choice import chosen_warnings, chosen_words
 from .sweep import faster_cases, preferred_cases
 
 __all__ = ["run_summary", "run_warnings", "sweep_summary", "sweep_warnings"]
@@ -35,6 +36,7 @@ def run_summary(run: xr.Dataset, seconds: float) -> str:
             f"contact: {', '.join(shares)}",
             f"{attrs['unconverged_steps']} unconverged steps, largest residual {attrs['max_residual']:.1e}, "
             f"largest penetration {attrs['max_penetration_m']:.1e} m",
+            *chosen_words(attrs),
             f"time: {seconds:.2f} s",
         ]
     )
@@ -64,38 +66,37 @@ def sweep_summary(sweep: xr.Dataset, seconds: float) -> str:
     lines += [
         f"unconverged steps: {int(sweep['unconverged_steps'].sum())}",
         f"largest residual: {residual:.1e}, largest penetration: {penetration:.1e} m",
+        *chosen_words(sweep.attrs),
         f"time: {seconds:.2f} s",
     ]
     return "\n".join(lines)
 
 
-def run_warnings(run: xr.Dataset, steps: int) -> list[str]:
+def run_warnings(run: xr.Dataset) -> list[str]:
     """Return what a reader of a run must know, a line each; none if all is well.
 
     Parameters
     ----------
     run
         What `simulate` returned.
-    steps
-        Its number of steps.
     """
-    return _unconverged(run.attrs["unconverged_steps"], steps, run.attrs["max_residual"])
+    attrs = run.attrs
+    return [*_unconverged(attrs["unconverged_steps"], attrs["steps"], attrs["max_residual"]), *chosen_warnings(attrs)]
 
 
-def sweep_warnings(sweep: xr.Dataset, steps: int) -> list[str]:
+def sweep_warnings(sweep: xr.Dataset) -> list[str]:
     """Return what a reader of a sweep must know, a line each; none if all is well.
 
     Parameters
     ----------
     sweep
         What `sweep` returned.
-    steps
-        The number of steps of a case.
     """
     errors = [error for error in sweep["error"].values.ravel() if error]
     cases = sweep["error"].size
     unconverged = int(sweep["unconverged_steps"].sum())
-    lines = _unconverged(unconverged, steps * (cases - len(errors)), float(sweep["max_residual"].max()))
+    steps = sweep.attrs["steps"] * (cases - len(errors))
+    lines = [*_unconverged(unconverged, steps, float(sweep["max_residual"].max())), *chosen_warnings(sweep.attrs)]
     if errors:
         lines.append(f"{len(errors)} of {cases} cases failed, the first: {errors[0]}")
     return lines

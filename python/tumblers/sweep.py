@@ -24,6 +24,7 @@ from .parts import Parts
 from .progress import OnProgress, native_call
 from .scenario import Scenario
 from .shape import Cuboid, Spiked, SpikedEnds
+from .step_choice import with_chosen_step
 from .version import __version__
 
 __all__ = [
@@ -69,7 +70,7 @@ def sweep(
     Parameters
     ----------
     scenario
-        What all cases have in common.
+        What all cases have in common. A step that is left to be chosen is chosen once, for the scenario as it is.
     drafts_deg
         Drafts φ, degrees; the paper's 0° to 15° by default.
     magnetization
@@ -87,8 +88,8 @@ def sweep(
         Dimensions ``draft_deg`` and ``magnetization_case`` (coordinates ``theta1_deg``, ``theta2_deg``):
         ``twist_deg``, ``drift_m``, ``speed_m_per_s``, ``flipped``, ``unconverged_steps``, ``newton_iterations``,
         ``max_residual``, ``max_penetration_m``, ``error``. A case that failed, or that could not even be built, is NaN
-        and says why in ``error``. Attributes: the scenario's TOML, and the ideal and the flipped speed where the field
-        and the shape have them.
+        and says why in ``error``. Attributes: the scenario's TOML, ``steps`` of a case, what `simulate` says of a step
+        that was chosen, and the ideal and the flipped speed where the field and the shape have them.
 
     Raises
     ------
@@ -105,6 +106,7 @@ def sweep(
         raise InputError("magnetization" if drafts else "drafts_deg", "an empty list", "at least one case")
     if threads is not None:
         thread_count("threads", threads)
+    scenario, chosen = with_chosen_step(scenario, threads, progress is True)
     rows = max(1, round(_PART_STEPS / (len(cases) * scenario.run.steps)))
     firsts = range(0, len(drafts), rows)
     kept = Parts(None if parts is None else Path(parts), sweep_settings(scenario, drafts, cases))
@@ -128,8 +130,13 @@ def sweep(
             )
             report(len(chunk) * len(cases))
     result = found[0] if len(found) == 1 else xr.concat(found, "draft_deg", data_vars="all", coords="minimal")
-    attrs = {"title": "tumblers sweep", "tumblers_version": __version__, "scenario": scenario.to_toml()}
-    return result.assign_attrs(attrs | _speeds(scenario))
+    attrs = {
+        "title": "tumblers sweep",
+        "tumblers_version": __version__,
+        "scenario": scenario.to_toml(),
+        "steps": scenario.run.steps,
+    }
+    return result.assign_attrs(attrs | chosen | _speeds(scenario))
 
 
 def sweep_settings(

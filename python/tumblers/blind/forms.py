@@ -249,7 +249,7 @@ class DistortedCoil(EffectLaw):
             return scenario
         effect: Any = self.effect
         harmonic = self.share * hypot(effect.amplitude_ratio - 1.0, radians(effect.phase_error_deg))
-        end = scenario.run.duration_s + scenario.run.step_s
+        end = scenario.run.duration_s + scenario.run.fixed_step_s
         time = np.linspace(0.0, end, 2 + int(end * field.frequency_Hz * 300.0))
         angle = 2.0 * pi * field.frequency_Hz * time
         second = field.quadrature_ratio * np.sin(angle + radians(field.phase_error_deg))

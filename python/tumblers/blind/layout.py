@@ -206,7 +206,7 @@ def _repeats(lab: Lab, plan: Plan, jitter: Jitter) -> bool:
 
 
 def _finer(scenario: Scenario) -> Scenario:
-    return replace(scenario, run=replace(scenario.run, step_s=0.7 * scenario.run.step_s))
+    return replace(scenario, run=replace(scenario.run, step_s=0.7 * scenario.run.fixed_step_s))
 
 
 def _sensible(plan: Plan, scene: Scene, lab: Lab) -> bool:

@@ -91,7 +91,7 @@ def watch(
 
 
 def _watch(scenario: Scenario, laws: Sequence[Law], times_s: NDArray[np.float64], trial: int, solver: Solver) -> Scene:
-    h = scenario.run.step_s
+    h = scenario.run.fixed_step_s
     frames = np.maximum(times_s, 0.0)
     first = np.floor(frames / h * (1.0 + 1e-12)).astype(int)
     last = int(first[-1]) + 1
@@ -130,7 +130,7 @@ def _watch(scenario: Scenario, laws: Sequence[Law], times_s: NDArray[np.float64]
 
 def _start(scenario: Scenario) -> State:
     # One step is the shortest run that there is; its first row is the start.
-    once = replace(scenario, run=replace(scenario.run, duration_s=scenario.run.step_s))
+    once = replace(scenario, run=replace(scenario.run, duration_s=scenario.run.fixed_step_s))
     rows = _core.rollouts([once.trial()], [1], 1)[0]
     position, orientation = rows["position_m"][0], rows["orientation"][0]
     still = np.zeros(3)

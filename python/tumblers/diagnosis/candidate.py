@@ -93,7 +93,7 @@ class Candidate:
         scenario
             Of any trial of the same robot.
         """
-        step = scenario.run.step_s
+        step = scenario.run.fixed_step_s
         if isinstance(self.field, RotatingField):
             step = min(step, 0.01 / self.field.frequency_Hz)
         run = replace(

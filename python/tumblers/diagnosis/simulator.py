@@ -154,7 +154,7 @@ class Simulator:
         scenario
             Any of this dataset's.
         """
-        step = min(2.0 * scenario.run.step_s, _first_step(scenario.field))
+        step = min(2.0 * scenario.run.fixed_step_s, _first_step(scenario.field))
         return replace(scenario, run=replace(scenario.run, step_s=step))
 
     def _finer(self, job: Job) -> int:
@@ -224,7 +224,7 @@ class Simulator:
         if self.dataset.sensor.tracked_point == "body_centre" and any(offset):
             position = position - _turned(orientation, np.array(offset))
         return Path(
-            interval_s=every * scenario.run.step_s,
+            interval_s=every * scenario.run.fixed_step_s,
             position_m=scenario.camera.seen_position(position),
             orientation=scenario.camera.seen_orientation(orientation),
             contact_mode=rollout["contact_mode"][:rows],
@@ -242,7 +242,7 @@ def _rows_every(scenario: Scenario) -> int:
     longest = _LONGEST_INTERVAL_S
     if isinstance(scenario.field, RotatingField):
         longest = min(longest, 1.0 / (_ROWS_PER_CYCLE * scenario.field.frequency_Hz))
-    return max(1, min(int(longest / scenario.run.step_s + 1e-9), scenario.run.steps))
+    return max(1, min(int(longest / scenario.run.fixed_step_s + 1e-9), scenario.run.steps))
 
 
 def _turned(orientation: Floats, vector: Floats) -> Floats:

@@ -12,6 +12,7 @@ from ..check import number, sequence
 from ..errors import InputError, show
 from ..progress import OnProgress, native_call
 from ..scenario import Scenario
+from ..step_choice import with_chosen_step
 from ..version import __version__
 from .ascent import LEAST_SHARE, bisections, limits
 from .defaults import CYCLES, RESOLUTION_DEG, SETTLING_CYCLES, SLOPES_DEG
@@ -86,6 +87,7 @@ def climb(
     whole_number("settling_cycles", settling_cycles, 0)
     whole_number("cycles", cycles, 1)
     rotating(scenario)
+    scenario, chosen = with_chosen_step(scenario, threads, progress is True)
     scenario.trial()
     total = len(slopes) + bisections(slopes, resolution_deg)
     with native_call("slopes", total, progress) as report:
@@ -137,6 +139,7 @@ def climb(
         "resolution_deg": float(resolution_deg),
         "settling_cycles": settling_cycles,
         "cycles": cycles,
+        **chosen,
     }
     return xr.Dataset(variables, coordinates, attrs=attrs)
 

@@ -20,6 +20,7 @@ from ..errors import InputError, show
 from ..parts import Parts, numbers_of
 from ..progress import OnProgress, native_call
 from ..scenario import Scenario
+from ..step_choice import with_chosen_step
 from ..version import __version__
 from .climb import whole_number
 from .defaults import DRIFT_COST, GENERATIONS, SAMPLES
@@ -138,10 +139,11 @@ def design(
             raise InputError(key, show(count), "a power of two, for an even Sobol sequence")
     whole_number("generations", generations, 0)
     whole_number("seed", seed, 0, 2**31)
-    space = DesignSpace(scenario, drift_cost)
     settings = design_settings(
         scenario, samples=samples, generations=generations, errors=errors, drift_cost=drift_cost, seed=seed
     )
+    scenario, chosen_step = with_chosen_step(scenario, threads, progress is True)
+    space = DesignSpace(scenario, drift_cost)
     kept = Parts(None if parts is None else Path(parts), settings)
     seen, fresh = errors.drawn(), replace(errors, draws=_FRESH * errors.draws, seed=errors.seed + 1).drawn()
     unit = qmc.Sobol(len(space.family.parameters), scramble=True, seed=seed).random(samples)
@@ -199,6 +201,7 @@ def design(
         "drift_cost": float(drift_cost),
         "robust_gain_m_per_s": float(gain.mean()),
         "robust_gain_error_m_per_s": float(gain.std(ddof=1) / np.sqrt(gain.size)),
+        **chosen_step,
     }
     return result
 

@@ -31,6 +31,7 @@ def finish(run: Callable[[], xr.Dataset], words: Callable[[xr.Dataset], str], ou
     """
     from ..atomic import write_files
     from ..netcdf import netcdf_bytes
+    from ..step_choice import chosen_words
     from .words import warnings
 
     start = perf_counter()
@@ -42,7 +43,7 @@ def finish(run: Callable[[], xr.Dataset], words: Callable[[xr.Dataset], str], ou
 
         files[plot] = figure_bytes(result, plot.suffix.lower().removeprefix("."), draw=_figure_of(result))
     write_files(files)
-    typer.echo(f"{words(result)}\ntime: {seconds:.2f} s")
+    typer.echo("\n".join([words(result), *chosen_words(result.attrs), f"time: {seconds:.2f} s"]))
     for warning in warnings(result):
         typer.echo(f"tumblers: warning: {warning}", err=True)
 

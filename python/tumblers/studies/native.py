@@ -131,7 +131,8 @@ class Native:
         runs = [scenarios[case] for case in built]
         periods = [1.0 / rotating(scenario).frequency_Hz for scenario in scenarios]
         every = [
-            max(1, int(periods[case] / run.run.step_s / _ROWS_PER_CYCLE)) for case, run in zip(built, runs, strict=True)
+            max(1, int(periods[case] / run.run.fixed_step_s / _ROWS_PER_CYCLE))
+            for case, run in zip(built, runs, strict=True)
         ]
         found = self._batch(
             lambda report: _core.rollouts(trials, every, self.threads, report),

@@ -15,6 +15,7 @@ from ..check import number, sequence
 from ..errors import InputError, show
 from ..progress import OnProgress
 from ..scenario import Scenario
+from ..step_choice import with_chosen_step
 from ..sweep import DRIFT_LIMIT_M, sweep
 from ..version import __version__
 from .defaults import DRAFTS_DEG, THETA1_DEG, THETA2_DEG
@@ -98,6 +99,7 @@ def tolerance(
     # 180° and -180° are one direction, and -0.0 is 0.0: each is run once.
     directions = np.unique(np.mod(theta2, 360.0))
     axes = [(0.0, 0.0), *((first, second) for first in theta1[1:] for second in directions)]
+    scenario, chosen = with_chosen_step(scenario, threads, progress is True)
     cases = sweep(scenario, drafts_deg=drafts, magnetization=axes, threads=threads, progress=progress)
     place = np.searchsorted(directions, np.mod(theta2, 360.0))
     columns = np.array(
@@ -160,6 +162,7 @@ def tolerance(
         "joint_theta2_draft_deg": float(np.array(drafts)[up_to_paper][-1]),
         "paper_box_kept": float(kept[:, -1][box].mean()) if corners else nan,
         "paper_box_drift_m": float(np.abs(variables["drift_m"][1][:, -1][box]).max()) if corners else nan,
+        **chosen,
     }
     return xr.Dataset(variables, coordinates, attrs=attrs)
 

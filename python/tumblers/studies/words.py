@@ -8,6 +8,7 @@ from math import isnan
 import numpy as np
 import xarray as xr
 
+from ..step_choice import chosen_warnings
 from .tolerance import PAPER_DRAFT_DEG, PAPER_THETA2_DEG
 
 __all__ = ["climb_words", "convergence_words", "design_words", "tolerance_words", "warnings"]
@@ -155,7 +156,7 @@ def warnings(result: xr.Dataset) -> list[str]:
     result
         What a study returned.
     """
-    lines = []
+    lines = chosen_warnings(result.attrs)
     steps = int(result["unconverged_steps"].sum())
     if steps:
         runs = int((result["unconverged_steps"] > 0).sum())
