@@ -49,7 +49,7 @@ REFUSED = [
     ("frequency_Hz = 5", "frequency_Hz = 5\nrotation_axis = [0, 0, 0]", "field.rotation_axis", "not zero"),
     ("frequency_Hz = 5", "direction = [0, 0, 1]", "field.direction", "unknown key"),
     ("step_s = 5.0e-4", "step_s = 0", "run.step_s", "greater than 0"),
-    ("step_s = 5.0e-4\n", "", "run.step_s", "found no such key, expected "),
+    ("duration_s = 0.25\n", "", "run.duration_s", "found no such key, expected "),
     ("step_s = 5.0e-4", "step_s = [1]", "run.step_s", "a finite number"),
     ("duration_s = 0.25", "duration_s = -1", "run.duration_s", "-1"),
     ("duration_s = 0.25", "duration_s = 1e9", "run.duration_s", "steps"),

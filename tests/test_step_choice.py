@@ -16,6 +16,7 @@ import tumblers
 from tumblers import InputError, Model, Run, Scenario, StaticField, TableField, choose_step, drive, preset_scenario
 from tumblers.blind.world import watch
 from tumblers.commands import app
+from tumblers.effects.contact_compliance import ContactCompliance
 from tumblers.metrics import Metrics, Yardstick, measured
 from tumblers.step_choice import ACCURACY, chosen_warnings, chosen_words
 from tumblers.summary import run_summary, run_warnings
@@ -162,6 +163,10 @@ def test_the_steps_keep_to_the_rows_the_time_the_period_and_the_stability() -> N
     assert every.scenario.run.output_every_s == 7e-4
     assert choose_step(rolling(5.0, duration_s=3e-4)).tried[0][0] == 3e-4
     assert choose_step(rolling(400.0, duration_s=0.01)).tried[0][0] == pytest.approx(1.0 / (20 * 400.0))
+    yielding = replace(rolling(5.0, duration_s=0.1), effects=(ContactCompliance(compliance_m_per_N=0.5),))
+    assert choose_step(yielding).tried[0][0] == ContactCompliance.longest_step_s
+    neutral = replace(rolling(5.0, duration_s=0.1), effects=(ContactCompliance(),))
+    assert choose_step(neutral).tried[0][0] == 5e-4
     # The half-size robot on aluminium is stable below 0.53 ms; at twice the field below 0.37 ms.
     strong = preset_scenario("spiked", drive=drive(0.040, 1.0), duration_s=0.2, step_s="auto")
     explicit = replace(strong, model=Model(magnetic_torque="start_of_step"))
@@ -260,6 +265,44 @@ def test_another_word_is_refused_in_one_line(
     assert line.startswith(f"{scenario_file}: {key}: found ")
     assert words in line
     assert "\n" not in line
+
+
+# What is meant where nothing is stated
+
+
+def test_a_file_that_leaves_out_the_step_has_one_chosen_at_the_midpoint(text: str) -> None:
+    bare = text.replace("step_s = 5.0e-4\n", "")
+    scenario = Scenario.from_toml(bare)
+    assert scenario.run.step_s == "auto"
+    assert scenario.model == Model(magnetic_torque="midpoint")
+    assert scenario == Scenario.from_toml(f'{bare}step_s = "auto"\n')
+    assert Scenario.from_toml(scenario.to_toml()) == scenario
+    assert 'magnetic_torque = "midpoint"' in scenario.to_toml()
+
+
+def test_a_file_with_a_number_means_what_it_always_meant(text: str) -> None:
+    scenario = Scenario.from_toml(text)
+    assert scenario.run.step_s == 5e-4
+    assert scenario.model == Model(magnetic_torque="end_of_step")
+    partly = Scenario.from_toml(f'{text}[model]\nadhesion_enters = "friction_only"\n')
+    assert partly.model == Model(magnetic_torque="end_of_step", adhesion_enters="friction_only")
+
+
+@pytest.mark.parametrize("torque", TORQUES)
+@pytest.mark.parametrize("step", ["", 'step_s = "auto"\n', "step_s = 2e-4\n"])
+def test_a_torque_that_is_stated_stays(text: str, torque: str, step: str) -> None:
+    stated = text.replace("step_s = 5.0e-4\n", step) + f'[model]\nmagnetic_torque = "{torque}"\n'
+    assert Scenario.from_toml(stated).model.magnetic_torque == torque
+
+
+def test_python_means_the_same_as_a_file() -> None:
+    parts = rolling(5.0)
+    made = Scenario(robot=parts.robot, substrate=parts.substrate, field=parts.field, run=Run(duration_s=0.5))
+    assert made == parts
+    assert preset_scenario("cuboid_on_paper", step_s="auto").model.magnetic_torque == "midpoint"
+    assert preset_scenario("cuboid_on_paper").model.magnetic_torque == "end_of_step"
+    # What has been set stays set when the step is replaced.
+    assert made.at_step(5e-4).model.magnetic_torque == "midpoint"
 
 
 # Who works with a number

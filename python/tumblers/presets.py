@@ -182,7 +182,8 @@ def preset_scenario(
     step_s
         Step, s, or ``"auto"``; 5·10⁻⁴ as released.
     model
-        Switches of the model; the defaults take the torque at the end of the step, as released.
+        Switches of the model. Where they leave it open the torque is taken at the end of the step, as released, and at
+        the midpoint where the step is ``"auto"``.
 
     Raises
     ------

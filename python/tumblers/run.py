@@ -30,7 +30,8 @@ class Run:
     duration_s
         Time of the run, s. One that is not a whole number of steps is covered in whole steps.
     step_s
-        Time of one step, s; ``"auto"`` for one that `tumblers.choose_step` chooses by an error estimate before the run.
+        Time of one step, s; ``"auto"``, the default, for one that `tumblers.choose_step` chooses by an error estimate
+        before the run.
     incline_deg
         Slope of the substrate along +y, degrees.
     side_incline_deg
@@ -47,7 +48,7 @@ class Run:
     """
 
     duration_s: float
-    step_s: StepLength
+    step_s: StepLength = AUTO
     incline_deg: float = 0.0
     output_every_s: float | None = None
     gravity_m_per_s2: float = 9.8

@@ -17,7 +17,7 @@ from .core_errors import core_error
 from .errors import InputError, show, unreadable
 from .field import Field, RotatingField, TableField, field_from_table, field_to_table
 from .initial import Initial
-from .model import MagneticTorque, Model
+from .model import RELEASED_TORQUE, MagneticTorque, Model
 from .relief import Relief
 from .robot import Robot
 from .run import AUTO, Run
@@ -59,7 +59,8 @@ class Scenario:
     robot, substrate, field, run
         Its parts.
     model, initial
-        The model's switches and the state at the start.
+        The model's switches and the state at the start. Where the model leaves the time of the torque open, it is set:
+        ``midpoint`` if the step is ``"auto"``, ``end_of_step`` if it is a number.
     relief, surroundings, camera
         The substrate's heights, what else acts on the robot, and how the run is seen.
     effects
@@ -88,6 +89,10 @@ class Scenario:
             if not isinstance(getattr(self, name), kind):
                 raise InputError(name, show(getattr(self, name)), f"a {name.capitalize()}")
         object.__setattr__(self, "effects", _checked_effects(self.effects))
+        # A number is that of a file that means the released scheme, which damps; a step that is to be accurate has the
+        # one that gets there in the longest steps (docs/performance.md).
+        torque = RELEASED_TORQUE if self.run.step_s != AUTO else "midpoint"
+        object.__setattr__(self, "model", self.model.with_torque(torque))
         if isinstance(self.field, TableField):
             self.field.covers(self.run.duration_s)
         if isinstance(self.field, RotatingField) and self.run.step_s != AUTO:
@@ -203,6 +208,13 @@ class Scenario:
         return replace(scenario, effects=()) if scenario.effects else scenario
 
     @property
+    def magnetic_torque(self) -> MagneticTorque:
+        """Where in the step the torque is taken."""
+        torque = self.model.magnetic_torque
+        assert torque is not None
+        return torque
+
+    @property
     def longest_step_s(self) -> float:
         """The longest step that the time of the run and a rotating field's period allow, s."""
         longest = self.run.duration_s
@@ -274,7 +286,7 @@ class Scenario:
                 gravity_m_per_s2=run.gravity_m_per_s2,
                 duration_s=run.duration_s,
                 step_s=run.fixed_step_s,
-                magnetic_torque=model.magnetic_torque,
+                magnetic_torque=scenario.magnetic_torque,
                 adhesion_acts_at=model.adhesion_acts_at,
                 adhesion_enters=model.adhesion_enters,
                 position_m=initial.position_m,

@@ -129,7 +129,7 @@ def choose_step(scenario: Scenario, *, threads: int | None = None, progress: boo
     """
     scenario.check()
     steps = _steps_s(scenario)
-    own = scenario.model.magnetic_torque
+    own = scenario.magnetic_torque
     runs: dict[float, tuple[_Key, _Key, _Key]] = {
         step: ((own, step), ("midpoint", step / 2.0), ("midpoint", step / 4.0)) for step in steps
     }
@@ -183,10 +183,11 @@ def _unsampled(scenario: Scenario) -> Scenario:
 def _steps_s(scenario: Scenario) -> list[float]:
     """Return the steps that are tried, the longest first."""
     longest = min(_LONGEST_S, scenario.longest_step_s, scenario.effective().longest_step_s)
+    longest = min([longest, *(effect.resolving_step_s for effect in scenario.effects)])
     every = scenario.run.output_every_s
     if every is not None:
         longest = every / ceil(every / longest * (1.0 - _ROUNDING))
-    if scenario.model.magnetic_torque == "start_of_step":
+    if scenario.magnetic_torque == "start_of_step":
         bound = _unsampled(scenario).at_step(longest, "midpoint").trial().stability_bound_s
         while longest >= bound:
             longest *= 0.5

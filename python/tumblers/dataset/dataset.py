@@ -10,7 +10,7 @@ from typing import Any
 
 from ..check import sequence
 from ..errors import InputError, show
-from ..model import Model
+from ..model import RELEASED_TORQUE, Model
 from ..robot import Robot
 from ..substrate import Substrate
 from .document import texts_of, write_dataset
@@ -80,7 +80,9 @@ class Dataset:
         for name in self.model_given:
             if name not in switches:
                 raise InputError("model_given", show(name), f"any of {', '.join(switches)}")
-        default = Model()
+        # What a number for the step means. A diagnosis, which takes another where nothing is stated, has `model_given`.
+        object.__setattr__(self, "model", self.model.with_torque(RELEASED_TORQUE))
+        default = Model(magnetic_torque=RELEASED_TORQUE)
         given = tuple(
             name for name in switches if name in self.model_given or getattr(self.model, name) != getattr(default, name)
         )

@@ -17,7 +17,7 @@ from ..dataset import Dataset
 from ..effects.base import Effect
 from ..errors import TumblersError
 from ..field import RotatingField, TableField
-from ..model import Model
+from ..model import RELEASED_TORQUE, Model
 from ..progress import native_call
 from ..scenario import Scenario
 from .pose import Path
@@ -137,9 +137,7 @@ class Simulator:
         scenario
             Any of this dataset's.
         """
-        scheme = (
-            self.model.magnetic_torque if "magnetic_torque" in self.dataset.model_given else Model().magnetic_torque
-        )
+        scheme = self.model.magnetic_torque if "magnetic_torque" in self.dataset.model_given else RELEASED_TORQUE
         return replace(
             scenario,
             run=replace(scenario.run, step_s=_first_step(scenario.field)),
@@ -159,7 +157,7 @@ class Simulator:
 
     def _finer(self, job: Job) -> int:
         """Return by how much the trial's step is too long for a job's effects."""
-        longest = min((effect.longest_step_s for effect in job.effects if not effect.is_neutral()), default=inf)
+        longest = min((effect.resolving_step_s for effect in job.effects), default=inf)
         finer = 1
         while self.step_s[job.trial] / finer > longest:
             finer *= 2

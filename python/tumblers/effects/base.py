@@ -105,6 +105,11 @@ class Effect(ABC):
         """
         return scenario if self.is_neutral() else self.act(scenario)
 
+    @property
+    def resolving_step_s(self) -> float:
+        """The longest step that resolves it as it is, s; infinite where it is neutral."""
+        return inf if self.is_neutral() else self.longest_step_s
+
     def is_neutral(self) -> bool:
         """Whether the effect changes nothing."""
         return self.vector() == tuple(p.neutral for p in self.parameters)
