@@ -212,7 +212,7 @@ def a_ladder(start, end, midpoint):
         for torque, speeds in (("start_of_step", start), ("end_of_step", end), ("midpoint", midpoint))
     }
     steps = tuple(1e-3 / 2**n for n in range(len(midpoint)))
-    return Ladder(cases(["cuboid"], [1.0])[0], steps, runs, Yardstick(duration_s=1.0, way_m=1e-3))
+    return Ladder(cases(["cuboid"], [1.0])[0], steps, runs, {}, Yardstick(duration_s=1.0, way_m=1e-3))
 
 
 def test_the_longest_step_is_the_one_from_which_on_all_are_accurate():
@@ -256,6 +256,8 @@ def test_a_small_run_of_time_to_accuracy():
     # docs/studies.md: 1092.8 µm/s converged, and the released step's is right already.
     assert perfect.ladder.converged.speed_m_per_s == pytest.approx(1092.8e-6, rel=1e-3)
     assert perfect.prices["end_of_step"].step_s == 5e-4
+    assert perfect.ladder.chosen["midpoint"].met
+    assert perfect.ladder.chosen["midpoint"].step_s == perfect.prices["midpoint"].step_s == 2.5e-4
     assert all(price.ms_per_s > 0.0 for price in perfect.prices.values())
     found = json.loads(json.dumps(results.to_json()))
     assert len(found["cases"]) == 2

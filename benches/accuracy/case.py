@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from tumblers.model import MagneticTorque
 from tumblers.presets import drive, preset_scenario
+from tumblers.run import StepLength
 from tumblers.scenario import Scenario
 
 __all__ = ["DRAFT_DEG", "FREQUENCIES_HZ", "ROBOTS", "SECONDS", "THETA1_DEG", "THETA2_DEG", "AccuracyCase", "cases"]
@@ -48,7 +49,7 @@ class AccuracyCase:
     errors: bool
     scenario: Scenario
 
-    def at(self, torque: MagneticTorque, step_s: float) -> Scenario:
+    def at(self, torque: MagneticTorque, step_s: StepLength) -> Scenario:
         """Return the scenario with a treatment of the torque and a step."""
         scenario = self.scenario
         return replace(

@@ -52,6 +52,7 @@ class Row:
             "runs": {
                 torque: [None if run is None else asdict(run) for run in runs] for torque, runs in found.runs.items()
             },
+            "chosen": {torque: asdict(chosen) for torque, chosen in found.chosen.items()},
             "prices": None if self.prices is None else {torque: asdict(price) for torque, price in self.prices.items()},
         }
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -9,16 +10,40 @@ from typing import get_args
 
 from tumblers.metrics import Metrics, Yardstick, measured
 from tumblers.model import MagneticTorque
+from tumblers.step_choice import choose_step
 
 from .case import AccuracyCase
 
-__all__ = ["KNOWN_TO", "STEPS_S", "TORQUES", "WITHIN", "Ladder", "ladder"]
+__all__ = ["KNOWN_TO", "STEPS_S", "TORQUES", "WITHIN", "Chosen", "Ladder", "ladder"]
 
 TORQUES: tuple[MagneticTorque, ...] = get_args(MagneticTorque)
 STEPS_S = tuple(2e-3 / 2**n for n in range(10))
 WITHIN = 0.01
 # A value that is to be met within 1 % is known, where it is known to half of that.
 KNOWN_TO = 0.5 * WITHIN
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """What ``step_s = "auto"`` chooses.
+
+    Attributes
+    ----------
+    step_s
+        The step, s.
+    estimate, met
+        Its error estimate, as a share, and whether that is small enough.
+    run
+        What the step gives.
+    ms
+        Processor time of the choice, ms.
+    """
+
+    step_s: float
+    estimate: float
+    met: bool
+    run: Metrics | None
+    ms: float
 
 
 @dataclass(frozen=True)
@@ -33,6 +58,8 @@ class Ladder:
         Decreasing steps, s.
     runs
         By treatment of the torque what each step gives; None where the step is refused or the run fails.
+    chosen
+        By treatment of the torque the step that is chosen by itself.
     yardstick
         What differences are measured by.
     """
@@ -40,6 +67,7 @@ class Ladder:
     case: AccuracyCase
     steps_s: tuple[float, ...]
     runs: Mapping[MagneticTorque, Sequence[Metrics | None]]
+    chosen: Mapping[MagneticTorque, Chosen]
     yardstick: Yardstick
 
     @property
@@ -109,4 +137,12 @@ def ladder(case: AccuracyCase, steps_s: Sequence[float] = STEPS_S) -> Ladder:
     period = 1.0 / case.frequency_Hz
     steps = tuple(step for step in steps_s if step <= period / 20)
     runs = {torque: measured([case.at(torque, step) for step in steps], threads=1) for torque in TORQUES}
-    return Ladder(case, steps, runs, Yardstick.of(case.scenario))
+    chosen = {torque: _chosen(case, torque) for torque in TORQUES}
+    return Ladder(case, steps, runs, chosen, Yardstick.of(case.scenario))
+
+
+def _chosen(case: AccuracyCase, torque: MagneticTorque) -> Chosen:
+    start = time.process_time()
+    choice = choose_step(case.at(torque, "auto"), threads=1)
+    seconds = time.process_time() - start
+    return Chosen(choice.step_s, choice.error, choice.met, measured([choice.scenario], threads=1)[0], 1e3 * seconds)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from statistics import median
 
 from peers.machine import conditions_in_words
 from peers.page import table
@@ -26,13 +27,19 @@ The step goes from {1e3 * STEPS_S[0]:g} ms down to {1e6 * STEPS_S[-1]:.2g} µs b
   flip: {100 * WITHIN:g} % is then 10 to 25 µm of drift, and 0.45°.
 - *converged*: the torque at the midpoint in the finest step. It is *known to* the greatest difference from it of that
   scheme in twice and four times the step, and of the torque at the start in the finest two. Where that is more than
-  {100 * KNOWN_TO:g} % the motion is too chaotic for these steps: there is nothing to be near to, and no time.
+  {100 * KNOWN_TO:g} % (**bold**) there is no value to be near to, and no time: the motion is chaotic, or needs finer
+  steps than these.
 - *step, time*: the longest step from which on all are accurate, and the processor's time of a simulated second in it,
   on one thread. A dash: not even the finest. **Bold**: the least time."""
 
 _GROUPS = """*Reached*: in how many cases a step is accurate; *cheapest*: in how many of them the treatment takes the
 least time; *time*: over the least of the case, geometric mean; a treatment that does not get there counts with the time
 of the finest step, which is too little. *Best*: the least of these."""
+
+_CHOSEN = """What `step_s = "auto"` ([scenario.md](scenario.md)) chooses by its error estimate, from 0.5 ms to 15.6 µs.
+*Met*: in how many cases it finds a step whose estimate is at most 1 %; *error*: the greatest distance from the
+converged value in the step that it then takes; *choosing*: processor time for a simulated second, the median of the
+cases."""
 
 _WORDS: dict[MagneticTorque, str] = {
     "start_of_step": "start of step",
@@ -59,7 +66,10 @@ def section(results: AccuracyResults) -> str:
             "### Which treatment of the torque",
             _group_table(results.groups),
             _GROUPS,
+            "### A step that is chosen by itself",
             _hidden(rows),
+            _chosen_table(rows),
+            _CHOSEN,
             "### Without errors",
             _case_table([row for row in rows if not row.ladder.case.errors]),
             "### With manufacturing errors",
@@ -82,7 +92,10 @@ def _known(rows: Sequence[Row]) -> str:
     if not unknown:
         return f"All {len(rows)} cases converge."
     with_errors = sum(each.case.errors for each in unknown)
-    return f"In {len(unknown)} of {len(rows)} cases ({with_errors} of them with errors) no step converges."
+    return (
+        f"In {len(unknown)} of {len(rows)} cases ({with_errors} of them with errors) the finest steps are too far apart"
+        " to call a value converged."
+    )
 
 
 def _hidden(rows: Sequence[Row]) -> str:
@@ -104,6 +117,27 @@ def _hidden(rows: Sequence[Row]) -> str:
         f" {100 * WITHIN:g} % or less and which are off by more:"
     )
     return "\n".join([head, "", *(words or ["- none."])])
+
+
+def _chosen_table(rows: Sequence[Row]) -> str:
+    ladders = [row.ladder for row in rows]
+    body = []
+    for torque in TORQUES:
+        known = [each for each in ladders if each.is_known]
+        met = [each for each in known if each.chosen[torque].met]
+        others = [each for each in ladders if not each.is_known]
+        errors = [each.yardstick.apart(each.chosen[torque].run, each.converged) for each in met]
+        body.append(
+            [
+                _WORDS[torque],
+                f"{len(met)} of {len(known)}",
+                f"{100 * max(errors, default=0.0):.2g} %",
+                f"{sum(each.chosen[torque].met for each in others)} of {len(others)}",
+                f"{_shown(median(each.chosen[torque].ms for each in ladders) / SECONDS)} ms",
+            ]
+        )
+    head = ["torque", "met where a value is known", "error, greatest", "met where none is", "choosing"]
+    return table(head, body)
 
 
 def _group_table(groups: Sequence[Group]) -> str:
