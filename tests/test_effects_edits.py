@@ -195,7 +195,9 @@ def test_a_draft_is_searched_as_far_as_the_body_bears_it() -> None:
     assert draft.ranges(edited("draft_angle", draft_deg=6.0)) == ((0.0, 1.0),)
     wide = replace(NOMINAL, robot=ROBOTS["spiked_pdms"].value)
     assert draft.ranges(wide) == ((0.0, 8.0),)
-    assert_allclose(draft.starts(NOMINAL), [(7.0 / 3.0,), (14.0 / 3.0,)], rtol=1e-12)
+    # A third and two thirds of the way in the logarithm: drafts of a tenth of a degree show.
+    way = np.arcsinh(7.0 / 0.1)
+    assert_allclose(draft.starts(NOMINAL), [(0.1 * np.sinh(way / 3.0),), (0.1 * np.sinh(way * 2.0 / 3.0),)], rtol=1e-12)
 
 
 @pytest.mark.parametrize("name", ["adhesion_coefficient", "line_contact_adhesion"])

@@ -16,10 +16,11 @@ __all__ = ["MANY", "from_beginnings", "promise"]
 
 Floats = NDArray[np.float64]
 
-# Points over the range that are tried (of one parameter, of more), every other one so much nearer to neutral, where
-# most causes are; from the best of them are fitted these shares of the trials' time one after another, in so many trial
-# points, then all of it.
-_ONE_PARAMETER_POINTS, _MORE_POINTS, _NEARER, _STAGES, _STAGE_POINTS, _LAST_POINTS = 8, 16, 0.15, (0.25, 0.5), 4, 6
+# Points over the range that are tried (of one parameter, of more), as many in each decade of their distance from
+# neutral over so many decades. From the best few of them these shares of the trials' time are fitted one after another,
+# the best alone after the first, in so many trial points; then all of it.
+_ONE_PARAMETER_POINTS, _MORE_POINTS, _DECADES = 16, 64, 1.7
+_BEST, _STAGES, _STAGE_POINTS, _LAST_POINTS = 3, (0.25, 0.5), 4, 6
 # Of more parameters than this, points over the range tell nothing: from all close starts, then from the best so
 # many, these shares are fitted.
 MANY, _FOLLOWED = 4, ((0.1, None), (0.25, 4), (0.5, 2))
@@ -79,24 +80,25 @@ def _tracked(fitter: Fitter) -> tuple[int, ...]:
     return tuple(i for i in fitter.trials if len(fitter.comparison.readers[i].observed.time_s))
 
 
-def _sampled(fitter: Fitter, hypothesis: Hypothesis, seed: int, tracked: tuple[int, ...]) -> tuple[float, Floats]:
-    """Return the objective over the beginnings at the best of many points over the range, and that point."""
-    free = hypothesis.high > hypothesis.low
-    points = _ONE_PARAMETER_POINTS if free.sum() < 2 else _MORE_POINTS
-    shares = qmc.Sobol(len(free), rng=np.random.default_rng(seed)).random(points)
-    tried: list[Floats] = [hypothesis.low + share * (hypothesis.high - hypothesis.low) for share in shares]
-    tried[1::2] = [_NEARER * point for point in tried[1::2]]
+def _sampled(fitter: Fitter, hypothesis: Hypothesis, seed: int, tracked: tuple[int, ...]) -> tuple[float, list[Floats]]:
+    """Return the least objective over the beginnings of many points over the range, and the best points."""
+    count = _ONE_PARAMETER_POINTS if np.sum(hypothesis.high > hypothesis.low) < 2 else _MORE_POINTS
+    drawn = qmc.Sobol(1 + len(hypothesis.low), rng=np.random.default_rng(seed)).random(count)
+    ways = 2.0 * drawn[:, 1:] - 1.0
+    ways *= (10.0 ** (-_DECADES * drawn[:, 0]) / np.max(np.abs(ways), axis=1))[:, None]
+    tried: list[Floats] = [np.where(way > 0.0, way * hypothesis.high, -way * hypothesis.low) for way in ways]
     residuals = fitter.residuals(hypothesis, tried, tracked, _STAGES[0])
     costs = [fitter.cost(residual, point, tracked) for residual, point in zip(residuals, tried, strict=True)]
-    best = int(np.argmin(costs))
-    return costs[best], tried[best]
+    order = np.argsort(costs, kind="stable")
+    return costs[order[0]], [tried[k] for k in order[:_BEST]]
 
 
-def _staged(fitter: Fitter, hypothesis: Hypothesis, point: Floats, tracked: tuple[int, ...]) -> Floats:
-    """Return where a fit to more and more of the trials' time leads from a point."""
+def _staged(fitter: Fitter, hypothesis: Hypothesis, points: Sequence[Floats], tracked: tuple[int, ...]) -> Floats:
+    """Return where fits to more and more of the trials' time lead from some points."""
     for stage in _STAGES:
-        point = fitter.fit(hypothesis, point, tracked, _STAGE_POINTS, stage).point
-    return point
+        fits = [fitter.fit(hypothesis, point, tracked, _STAGE_POINTS, stage) for point in points]
+        points = [min(fits, key=lambda fit: fit.cost).point]
+    return points[0]
 
 
 def _followed(fitter: Fitter, contender: Contender, possible: Sequence[Hypothesis], tracked: tuple[int, ...]) -> Floats:
