@@ -16,10 +16,10 @@ __all__ = ["MANY", "from_beginnings", "promise"]
 
 Floats = NDArray[np.float64]
 
-# Points over the range that are tried (of one parameter, of more), as many in each decade of their distance from
-# neutral over so many decades. From the best few of them these shares of the trials' time are fitted one after another,
-# the best alone after the first, in so many trial points; then all of it.
-_ONE_PARAMETER_POINTS, _MORE_POINTS, _DECADES = 16, 64, 1.7
+# Points that are tried (of one parameter, of more): some evenly over the range, and as many in each decade of their
+# distance from neutral, or from where two effects are, over so many decades. From the best few of them these shares of
+# the trials' time are fitted one after another, the best alone after the first, in so many trial points; then all.
+_EVEN, _BY_DECADE, _DECADES = (8, 32), (16, 64), 1.7
 _BEST, _STAGES, _STAGE_POINTS, _LAST_POINTS = 3, (0.25, 0.5), 4, 6
 # Of more parameters than this, points over the range tell nothing: from all close starts, then from the best so
 # many, these shares are fitted.
@@ -49,7 +49,7 @@ def from_beginnings(fitter: Fitter, contender: Contender, possible: Sequence[Hyp
     point = (
         _followed(fitter, contender, possible, tracked)
         if len(contender.point) > MANY
-        else _staged(fitter, hypothesis, _sampled(fitter, hypothesis, seed, tracked)[1], tracked)
+        else _staged(fitter, hypothesis, _sampled(fitter, contender, seed, tracked)[1], tracked)
     )
     fit = fitter.fit(hypothesis, point, evaluations=_LAST_POINTS)
     return of_fit(fitter, min(fitter.again(contender.fit), fit, key=lambda fit: fit.cost))
@@ -73,20 +73,27 @@ def promise(fitter: Fitter, contender: Contender, seed: int) -> float:
     assert contender.fit is not None
     hypothesis = contender.fit.hypothesis
     here = fitter.residuals(hypothesis, [contender.point], tracked, _STAGES[0])[0]
-    return fitter.cost(here, contender.point, tracked) - _sampled(fitter, hypothesis, seed, tracked)[0]
+    return fitter.cost(here, contender.point, tracked) - _sampled(fitter, contender, seed, tracked)[0]
 
 
 def _tracked(fitter: Fitter) -> tuple[int, ...]:
     return tuple(i for i in fitter.trials if len(fitter.comparison.readers[i].observed.time_s))
 
 
-def _sampled(fitter: Fitter, hypothesis: Hypothesis, seed: int, tracked: tuple[int, ...]) -> tuple[float, list[Floats]]:
-    """Return the least objective over the beginnings of many points over the range, and the best points."""
-    count = _ONE_PARAMETER_POINTS if np.sum(hypothesis.high > hypothesis.low) < 2 else _MORE_POINTS
-    drawn = qmc.Sobol(1 + len(hypothesis.low), rng=np.random.default_rng(seed)).random(count)
+def _sampled(fitter: Fitter, contender: Contender, seed: int, tracked: tuple[int, ...]) -> tuple[float, list[Floats]]:
+    """Return the least objective over the beginnings of many points, and the best of them."""
+    assert contender.fit is not None
+    hypothesis = contender.fit.hypothesis
+    low, high = hypothesis.low, hypothesis.high
+    more = int(np.sum(high > low) > 1)
+    sobol = qmc.Sobol(1 + len(low), rng=np.random.default_rng(seed))
+    even = low + sobol.random(_EVEN[more])[:, 1:] * (high - low)
+    drawn = sobol.random(_BY_DECADE[more])
     ways = 2.0 * drawn[:, 1:] - 1.0
     ways *= (10.0 ** (-_DECADES * drawn[:, 0]) / np.max(np.abs(ways), axis=1))[:, None]
-    tried: list[Floats] = [np.where(way > 0.0, way * hypothesis.high, -way * hypothesis.low) for way in ways]
+    # Of two effects one may be right as it is.
+    centre = contender.point if len(contender.names) > 1 else np.zeros(len(low))
+    tried: list[Floats] = [*even, *np.clip(centre + np.where(ways > 0.0, ways * high, -ways * low), low, high)]
     residuals = fitter.residuals(hypothesis, tried, tracked, _STAGES[0])
     costs = [fitter.cost(residual, point, tracked) for residual, point in zip(residuals, tried, strict=True)]
     order = np.argsort(costs, kind="stable")
