@@ -353,6 +353,21 @@ def test_a_sweep_goes_on_from_its_parts(tmp_path: Path, monkeypatch: pytest.Monk
     assert same_rows(tumblers.sweep(scenario, **cases), first)  # type: ignore[arg-type]
 
 
+def test_a_sweep_of_the_command_line_goes_on_from_its_parts_and_removes_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys.modules["tumblers.sweep"], "_PART_STEPS", 1)
+    monkeypatch.chdir(tmp_path)
+    scenario = rolling(10.0, duration_s=0.2)
+    scenario.save("slope.toml")
+    tumblers.sweep(scenario, drafts_deg=[0.0, 2.0], magnetization=[(0.0, 0.0)], parts="x.nc.parts")
+    (tmp_path / "x.nc.parts" / "drafts-00001.nc").unlink()
+    arguments = ["sweep", "--robot", "slope.toml", "--drafts", "0,2", "--theta1", "0", "--out", "x.nc"]
+    found = CliRunner().invoke(app, arguments)
+    assert found.exit_code == 0, found.output
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["slope.toml", "x.nc"]
+
+
 @pytest.mark.parametrize(
     "arguments",
     [

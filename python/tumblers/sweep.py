@@ -106,10 +106,11 @@ def sweep(
         raise InputError("magnetization" if drafts else "drafts_deg", "an empty list", "at least one case")
     if threads is not None:
         thread_count("threads", threads)
+    # The settings are those of the scenario as it is given: what the step is chosen from, and what a caller knows.
+    kept = Parts(None if parts is None else Path(parts), sweep_settings(scenario, drafts, cases))
     scenario, chosen = with_chosen_step(scenario, threads, progress is True)
     rows = max(1, round(_PART_STEPS / (len(cases) * scenario.run.steps)))
     firsts = range(0, len(drafts), rows)
-    kept = Parts(None if parts is None else Path(parts), sweep_settings(scenario, drafts, cases))
     if len(firsts) == 1:
         kept = Parts(None, kept.settings)
     found = []
