@@ -15,7 +15,7 @@ __all__ = ["PRIOR_SIGMA", "Hypothesis"]
 
 Floats = NDArray[np.float64]
 
-# A parameter is expected within about twice this share of its range around neutral.
+# A coordinate is expected within about twice this share of its range around neutral.
 PRIOR_SIGMA = 0.5
 
 
@@ -23,8 +23,8 @@ PRIOR_SIGMA = 0.5
 class Hypothesis:
     """Some effects, and the ranges of their parameters.
 
-    A coordinate c of a fit counts as `u = (c - neutral) / scale`, with the farther end of its range at `|u| = 1`; the
-    coordinates are the parameters, unless an effect says otherwise (`Effect.to_fit`).
+    A coordinate c of a fit counts as `u = (c - neutral) / scale`, with the farther end of its range at `|u| = 1`; what
+    the coordinates are, an effect says (`Effect.to_fit`).
 
     Attributes
     ----------
