@@ -8,11 +8,14 @@ SOURCES := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Carg
 
 # One interpreter for every cargo call, or pyo3 would be built again for each other one that it finds.
 export PYO3_PYTHON := $(abspath $(BIN)/python)
-# The wider instructions of the machine, where it has them: they take a seventh off a step, and change no bit (docs/step.md).
+# The wider instructions of the machine, where it has them all: they take a seventh off a step, and change no bit
+# (docs/step.md). Where it has not, nothing is set: set to nothing, it would hide the flags of a user's cargo configuration.
+X86_64_V3 := avx avx2 bmi1 bmi2 f16c fma abm movbe xsave
 ifeq ($(origin RUSTFLAGS), undefined)
-RUSTFLAGS := $(if $(shell grep -w avx2 /proc/cpuinfo 2>/dev/null | grep -w bmi2 | grep -w fma | grep -w movbe),-C target-cpu=x86-64-v3)
+ifeq ($(filter-out $(shell grep -m1 '^flags' /proc/cpuinfo 2>/dev/null),$(X86_64_V3)),)
+export RUSTFLAGS := -C target-cpu=x86-64-v3
 endif
-export RUSTFLAGS
+endif
 
 .PHONY: sweep test lint rust-test python-test dozen fuzz bench peers accuracy wheel deny deny-locked clean
 
@@ -49,7 +52,7 @@ fuzz: $(VENV)/installed $(VENV)/developing
 	TUMBLERS_FUZZ_EXAMPLES=5000 $(BIN)/pytest tests/trust/test_readers.py
 
 # The wheel that users get, for any machine, built and run where there are neither the sources nor Rust.
-wheel: RUSTFLAGS :=
+wheel: export RUSTFLAGS :=
 wheel: $(BIN)/maturin
 	rm -rf target/wheels
 	. $(BIN)/activate && maturin build --release --locked
