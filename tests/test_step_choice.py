@@ -11,7 +11,17 @@ import pytest
 import xarray as xr
 
 import tumblers
-from tumblers import Model, Run, Scenario, StaticField, TableField, choose_step, drive, preset_scenario
+from tumblers import (
+    Model,
+    Run,
+    Scenario,
+    StaticField,
+    Surroundings,
+    TableField,
+    choose_step,
+    drive,
+    preset_scenario,
+)
 from tumblers.effects.contact_compliance import ContactCompliance
 from tumblers.metrics import Metrics, Yardstick, measured
 from tumblers.step_choice import ACCURACY, chosen_warnings, chosen_words
@@ -97,6 +107,15 @@ def test_runs_that_fail_are_infinitely_far_apart(monkeypatch: pytest.MonkeyPatch
     chosen = choose_step(rolling(5.0))
     assert chosen.error == float("inf")
     assert not chosen.met
+
+
+def test_a_run_without_a_cycle_that_diverges_has_failed() -> None:
+    still = StaticField(strength_T=0.005, direction=(0.0, 0.6, 0.8))
+    # A force beyond the greatest float over the mass.
+    torn = Surroundings(force_N=(0.0, 1e304, 0.0))
+    scenario = replace(rolling(5.0, duration_s=0.05), field=still, surroundings=torn)
+    assert measured([scenario.at_step(5e-4)]) == [None]
+    assert not choose_step(scenario).met
 
 
 # Distances

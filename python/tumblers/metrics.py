@@ -125,7 +125,8 @@ def measured(scenarios: Sequence[Scenario], threads: int = 0) -> list[Metrics | 
     trials = [trial for _, trial in batches[False]]
     rollouts = _core.rollouts(trials, [trial.steps for trial in trials], threads)
     for (i, _), rollout in zip(batches[False], rollouts, strict=True):
-        if rollout["error"] is None:
+        # One that diverged has no end.
+        if rollout["error"] is None and len(rollout["time_s"]) > 1:
             found[i] = _at_the_end(rollout)
     return found
 
