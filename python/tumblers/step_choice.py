@@ -21,10 +21,11 @@ from dataclasses import dataclass, replace
 from math import ceil
 from typing import Any
 
+from .errors import InputError
 from .metrics import Metrics, Yardstick, measured
 from .model import MagneticTorque
 from .progress import OnProgress, native_call
-from .run import AUTO
+from .run import AUTO, MOST_STEPS
 from .scenario import Scenario
 
 __all__ = ["ACCURACY", "StepChoice", "choose_step", "chosen_warnings", "chosen_words", "with_chosen_step"]
@@ -134,6 +135,10 @@ def choose_step(scenario: Scenario, *, threads: int | None = None, progress: boo
         step: ((own, step), ("midpoint", step / 2.0), ("midpoint", step / 4.0)) for step in steps
     }
     unsampled = _unsampled(scenario)
+    finest = steps[-1] / 4.0
+    if scenario.run.duration_s / finest > MOST_STEPS:
+        wanted = f"'{AUTO}', which may take steps of {finest:.3g} s, for {scenario.run.duration_s:g} s"
+        raise InputError("run.step_s", wanted, f"a step in s for a run of more than {MOST_STEPS * finest:.3g} s")
     scenarios = {key: unsampled.at_step(key[1], key[0]) for keys in runs.values() for key in keys}
     yardstick = Yardstick.of(scenario)
     found: dict[_Key, Metrics | None] = {}
