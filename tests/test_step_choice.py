@@ -23,7 +23,6 @@ from tumblers import (
     preset_scenario,
 )
 from tumblers.effects.contact_compliance import ContactCompliance
-from tumblers.errors import InputError
 from tumblers.metrics import Metrics, Yardstick, measured
 from tumblers.step_choice import ACCURACY, chosen_warnings, chosen_words
 from tumblers.summary import run_summary, run_warnings
@@ -234,8 +233,3 @@ def test_what_is_said_of_a_choice() -> None:
         "chaotic"
     ]
     assert chosen_words({"title": "tumblers run"}) == chosen_warnings({}) == chosen_warnings(attrs) == []
-
-
-def test_a_run_that_is_too_long_for_the_finest_step_asks_for_a_step() -> None:
-    with pytest.raises(InputError, match=r"run\.step_s: found 'auto'.*for 5000 s, expected a step in s"):
-        choose_step(rolling(5.0, duration_s=5000.0))
