@@ -108,9 +108,7 @@ def test_what_needs_a_number_says_so_in_one_line() -> None:
 
 
 def test_a_run_that_is_too_long_for_the_steps_is_refused() -> None:
-    with pytest.raises(
-        InputError, match=r"^run\.step_s: found 'auto', .* for 1e\+06 s, expected a step"
-    ):
+    with pytest.raises(InputError, match=r"^run\.step_s: found 'auto', .* for 1e\+06 s, expected a step"):
         tumblers.simulate(rolling(5.0, duration_s=1e6))
 
 
