@@ -30,13 +30,9 @@ def workers(jobs: int | None) -> Iterator[ProcessPoolExecutor]:
     try:
         yield pool
     except BaseException:
-        # The pool forgets its processes when it is shut down, and would wait for what they are at.
-        processes = list(pool._processes.values())
-        pool.shutdown(wait=False, cancel_futures=True)
-        for process in processes:
+        # It would wait for what they are at. Who waits for their end is the pool alone: two would race for it.
+        for process in list(pool._processes.values()):
             process.terminate()
-        for process in processes:
-            process.join()
         raise
     finally:
         pool.shutdown(cancel_futures=True)
