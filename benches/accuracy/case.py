@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from tumblers.model import MagneticTorque
 from tumblers.presets import drive, preset_scenario
-from tumblers.run import StepLength
 from tumblers.scenario import Scenario
 
 __all__ = ["DRAFT_DEG", "FREQUENCIES_HZ", "ROBOTS", "SECONDS", "THETA1_DEG", "THETA2_DEG", "AccuracyCase", "cases"]
@@ -41,22 +39,13 @@ class AccuracyCase:
     errors
         Whether it has manufacturing errors.
     scenario
-        All of it; step and treatment of the torque are replaced.
+        All of it; step and treatment of the torque are others in each run.
     """
 
     robot: str
     frequency_Hz: float
     errors: bool
     scenario: Scenario
-
-    def at(self, torque: MagneticTorque, step_s: StepLength) -> Scenario:
-        """Return the scenario with a treatment of the torque and a step."""
-        scenario = self.scenario
-        return replace(
-            scenario,
-            run=replace(scenario.run, step_s=step_s),
-            model=replace(scenario.model, magnetic_torque=torque),
-        )
 
 
 def cases(robots: Sequence[str], frequencies_Hz: Sequence[float]) -> list[AccuracyCase]:

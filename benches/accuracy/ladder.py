@@ -10,17 +10,16 @@ from typing import get_args
 
 from tumblers.metrics import Metrics, Yardstick, measured
 from tumblers.model import MagneticTorque
-from tumblers.step_choice import choose_step
+from tumblers.step_choice import ACCURACY, choose_step
 
 from .case import AccuracyCase
 
-__all__ = ["KNOWN_TO", "STEPS_S", "TORQUES", "WITHIN", "Chosen", "Ladder", "ladder"]
+__all__ = ["KNOWN_TO", "STEPS_S", "TORQUES", "Chosen", "Ladder", "ladder"]
 
 TORQUES: tuple[MagneticTorque, ...] = get_args(MagneticTorque)
 STEPS_S = tuple(2e-3 / 2**n for n in range(10))
-WITHIN = 0.01
 # A value that is to be met within 1 % is known, where it is known to half of that.
-KNOWN_TO = 0.5 * WITHIN
+KNOWN_TO = 0.5 * ACCURACY
 
 
 @dataclass(frozen=True)
@@ -106,7 +105,7 @@ class Ladder:
         """
         longest = None
         for step, error in zip(self.steps_s[::-1], self.errors(torque)[::-1], strict=True):
-            if error > WITHIN:
+            if error > ACCURACY:
                 break
             longest = step
         return longest
@@ -121,7 +120,7 @@ class Ladder:
         """
         changes = [self.yardstick.apart(run, finer) for run, finer in pairwise(self.runs[torque])]
         found = zip(self.steps_s, changes, self.errors(torque), strict=False)
-        return [(step, change, error) for step, change, error in found if change <= WITHIN < error]
+        return [(step, change, error) for step, change, error in found if change <= ACCURACY < error]
 
 
 def ladder(case: AccuracyCase, steps_s: Sequence[float] = STEPS_S) -> Ladder:
@@ -134,15 +133,14 @@ def ladder(case: AccuracyCase, steps_s: Sequence[float] = STEPS_S) -> Ladder:
     steps_s
         Decreasing steps, s; those that the field's period does not allow are left out.
     """
-    period = 1.0 / case.frequency_Hz
-    steps = tuple(step for step in steps_s if step <= period / 20)
-    runs = {torque: measured([case.at(torque, step) for step in steps], threads=1) for torque in TORQUES}
+    steps = tuple(step for step in steps_s if step <= case.scenario.longest_step_s)
+    runs = {torque: measured([case.scenario.at_step(step, torque) for step in steps], threads=1) for torque in TORQUES}
     chosen = {torque: _chosen(case, torque) for torque in TORQUES}
     return Ladder(case, steps, runs, chosen, Yardstick.of(case.scenario))
 
 
 def _chosen(case: AccuracyCase, torque: MagneticTorque) -> Chosen:
     start = time.process_time()
-    choice = choose_step(case.at(torque, "auto"), threads=1)
+    choice = choose_step(case.scenario.at_step("auto", torque), threads=1)
     seconds = time.process_time() - start
     return Chosen(choice.step_s, choice.error, choice.met, measured([choice.scenario], threads=1)[0], 1e3 * seconds)

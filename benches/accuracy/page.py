@@ -9,10 +9,11 @@ from peers.machine import conditions_in_words
 from peers.page import table
 
 from tumblers.model import MagneticTorque
+from tumblers.step_choice import ACCURACY
 
 from .case import DRAFT_DEG, SECONDS, THETA1_DEG, THETA2_DEG
 from .comparison import AccuracyResults, Row
-from .ladder import KNOWN_TO, STEPS_S, TORQUES, WITHIN
+from .ladder import KNOWN_TO, STEPS_S, TORQUES
 from .price import Group
 
 __all__ = ["lines", "section"]
@@ -22,9 +23,9 @@ on aluminium at 20 mT; without errors, and with a draft of {DRAFT_DEG:g}° and a
 θ1 = {THETA1_DEG:g}° (the first cuboid's own 27°) and θ2 = {THETA2_DEG:g}°, a corner of the paper's tolerance.
 The step goes from {1e3 * STEPS_S[0]:g} ms down to {1e6 * STEPS_S[-1]:.2g} µs by halves.
 
-- *accurate*: speed, drift and twist after a cycle within {100 * WITHIN:g} % of the converged ones. A displacement
+- *accurate*: speed, drift and twist after a cycle within {100 * ACCURACY:g} % of the converged ones. A displacement
   shorter than the perimeter of the hull counts as a share of that, a twist of less than a flip (45°) as a share of a
-  flip: {100 * WITHIN:g} % is then 10 to 25 µm of drift, and 0.45°.
+  flip: {100 * ACCURACY:g} % is then 10 to 25 µm of drift, and 0.45°.
 - *converged*: the torque at the midpoint in the finest step. It is *known to* the greatest difference from it of that
   scheme in twice and four times the step, and of the torque at the start in the finest two. Where that is more than
   {100 * KNOWN_TO:g} % (**bold**) there is no value to be near to, and no time: the motion is chaotic, or needs finer
@@ -114,7 +115,7 @@ def _hidden(rows: Sequence[Row]) -> str:
         )
     head = (
         f"Halving the step does not always show its error. Steps of the cases that converge, which halving moves by"
-        f" {100 * WITHIN:g} % or less and which are off by more:"
+        f" {100 * ACCURACY:g} % or less and which are off by more:"
     )
     return "\n".join([head, "", *(words or ["- none."])])
 

@@ -52,7 +52,9 @@ def prices(ladder: Ladder, repetitions: int, health: Health, tell: Callable[[], 
         Called after each.
     """
     longest = {torque: ladder.longest_step_s(torque) for torque in TORQUES}
-    runs = {torque: ladder.case.at(torque, step or ladder.steps_s[-1]) for torque, step in longest.items()}
+    runs = {
+        torque: ladder.case.scenario.at_step(step or ladder.steps_s[-1], torque) for torque, step in longest.items()
+    }
     contestants = {
         torque: swept([Case(ladder.case.robot, run)], -(-_LEAST_STEPS // run.run.steps), 1, health)
         for torque, run in runs.items()

@@ -19,7 +19,7 @@ from .model import RELEASED_TORQUE, MagneticTorque, Model
 from .native_trial import native_trial
 from .relief import Relief
 from .robot import Robot
-from .run import AUTO, Run
+from .run import AUTO, Run, StepLength
 from .section import as_section, known_keys, read_section, write_entry, write_section
 from .substrate import Substrate
 from .surroundings import Surroundings
@@ -221,13 +221,13 @@ class Scenario:
             longest = min(longest, 1.0 / (_STEPS_PER_CYCLE * self.field.frequency_Hz))
         return longest
 
-    def at_step(self, step_s: float, magnetic_torque: MagneticTorque | None = None) -> Scenario:
+    def at_step(self, step_s: StepLength, magnetic_torque: MagneticTorque | None = None) -> Scenario:
         """Return the scenario with another step.
 
         Parameters
         ----------
         step_s
-            Step, s.
+            Step, s, or ``"auto"``.
         magnetic_torque
             Another time in the step for the torque, too; as it is if None.
 
