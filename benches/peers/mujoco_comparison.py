@@ -68,7 +68,9 @@ def compare(repetitions: int, tell: OnPhase, copies: int = COPIES, grids: bool =
     found = conditions({"tumblers": __version__, "mujoco": VERSION}, load(), repetitions)
     health = Health()
     speeds = _speeds(repetitions, tell, copies, health)
-    contacts = contacts_of("MuJoCo", _PROFILES[::-1], tumbling(), lambda case: our_run(case, health)[0], recorded, tell)
+    contacts = contacts_of(
+        MujocoResults.peer, _PROFILES[::-1], tumbling(), lambda case: our_run(case, health)[0], recorded, tell
+    )
     times = _grids(min(repetitions, _MOST_GRIDS), tell, health) if grids else []
     return MujocoResults(
         conditions=found,
