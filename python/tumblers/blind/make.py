@@ -109,7 +109,6 @@ def _drawn(
     kept: Parts, names: list[str], seed: int, jobs: int | None, progress: bool | OnProgress
 ) -> list[dict[str, Any]]:
     """Return each dataset's files with its salt and its answer: those that are kept, and the others drawn."""
-    found = {}
     with native_call("datasets", len(names), progress) as on_progress, workers(jobs) as pool:
 
         def drawn(index: int) -> Future[tuple[Dataset, Answer]]:
