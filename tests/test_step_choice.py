@@ -135,6 +135,7 @@ def test_a_distance_is_the_greatest_share() -> None:
     # Two sides of a half turn are neighbours.
     assert yardstick.apart(run(1e-2, twist=179.0), run(1e-2, twist=-179.0)) == pytest.approx(2.0 / 179.0)
     assert yardstick.apart(None, run(1e-2)) == float("inf")
+    assert yardstick.apart(run(float("nan"), drift=float("nan"), twist=float("nan")), run(1e-2)) == float("inf")
 
 
 def test_a_run_without_a_cycle_is_measured_at_its_end() -> None:

@@ -92,6 +92,8 @@ class Yardstick:
             abs(run.drift_m - other.drift_m) / max(abs(other.drift_m), self.way_m),
             abs(turned) / max(abs(other.twist_deg), FLIP_DEG),
         )
+        if not isfinite(shares[0]):
+            return inf
         # A cycle that ends with the run may miss its end by a rounding: there is no drift and no twist then.
         return max(share for share in shares if isfinite(share))
 

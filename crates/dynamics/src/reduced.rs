@@ -152,6 +152,7 @@ impl Unknowns {
     fn moved<const N: usize>(&self, direction: &SVector<f64, N>, length: f64, scales: &Scales<N>) -> Self {
         let after = |value: f64, i: usize, scale: f64| {
             let next = value - length * direction[i] * scale;
+            // What is no number stays none, and the rows show it.
             if next.abs() > NOTHING * scale { next } else { 0.0 * next }
         };
         let mut next = *self;
