@@ -29,6 +29,7 @@ from .observed import observe
 from .pose import Path
 from .reading import Reader
 from .simulator import Job, Simulator
+from .stretch import Stretch
 
 __all__ = ["FAR", "Comparison", "Residual"]
 
@@ -200,8 +201,8 @@ class Comparison:
         values
             Its whitened differences, shape (n_i,).
         """
-        track = values[: self.floors[trial].tracked]
-        return 1.0 / (1.0 + robust_cost(track) / (FAR * len(track))) if len(track) else 1.0
+        count = self.floors[trial].tracked
+        return _weight(values[:count], count)
 
     def labels(self, trial: int) -> list[tuple[str, Floats]]:
         """Return the channels (and outcomes) of a trial's differences and the times of each, s, in their order.
@@ -234,22 +235,25 @@ class Comparison:
         fit_nuisances
             False to take the sensor as perfect.
         share
-            Of each trial's time that counts; what is later, and outcomes where it is less than 1, has no difference. A
-            whitened difference depends on the frames before it alone, so that a part is compared as it should be.
+            Of each trial's time that counts; what is later, and outcomes where it is less than 1, has no difference.
         tolerance
             How far the nominal numbers are off, shape (`SHARED`,); fitted if None.
         """
         count = len(self.readers)
+        stretches = self._stretches(share)
         local, shared = np.zeros((count, 3)), np.zeros(2 + SHARED)
         held = tolerance is not None
         if tolerance is not None:
             shared[2:] = tolerance
         train = range(count) if train is None else train
         if fit_nuisances:
-            local[:, 0] = [self._clock(i, path, share) for i, path in enumerate(paths)]
+            local[:, 0] = [self._clock(i, path, stretches[i]) for i, path in enumerate(paths)]
             for _ in range(_ITERATIONS):
-                local, shared = self._improved(paths, local, shared, set(train), share, held)
-        trials = tuple(self._whitened(i, path, local[i], shared, share) for i, path in enumerate(paths))
+                local, shared = self._improved(paths, local, shared, set(train), stretches, held)
+        trials = tuple(
+            self._whitened(stretch, path, local[i], shared)
+            for i, (stretch, path) in enumerate(zip(stretches, paths, strict=True))
+        )
         prior = np.concatenate([(local / self.local_sigmas).ravel(), shared / self.shared_sigmas])
         return Residual(trials, prior, local, shared[:2], shared[2:])
 
@@ -264,50 +268,42 @@ class Comparison:
             Of the same or another model.
         """
         shared = np.concatenate([nuisances.camera, nuisances.tolerance])
-        trials = tuple(self._whitened(i, path, nuisances.local[i], shared, 1.0) for i, path in enumerate(paths))
+        stretches = self._stretches(1.0)
+        trials = tuple(
+            self._whitened(stretch, path, nuisances.local[i], shared)
+            for i, (stretch, path) in enumerate(zip(stretches, paths, strict=True))
+        )
         return replace(nuisances, trials=trials)
 
     def raw(self, trial: int, path: Path, local: Floats, camera: Floats) -> dict[str, Floats]:
         """Return `measured - model` of a trial by channel, m or rad, NaN where lost, for given nuisances."""
         return self.readers[trial].differences(path, local, camera)
 
-    def _whitened(self, trial: int, path: Path | None, local: Floats, shared: Floats, share: float) -> Floats:
-        floor, reader = self.floors[trial], self.readers[trial]
-        if path is None:
-            return np.full(floor.size, _NOT_RUN)
-        differences = reader.differences(path, local, shared[:2])
-        parts = [floor.whiten[name] @ differences[name][kept] for name, kept in floor.valid.items()]
-        parts.append(self._outcomes(trial, path, shared[:2]))
-        return (np.concatenate(parts) - floor.tolerance @ shared[2:]) * self._counts(trial, share)
-
-    def _counts(self, trial: int, share: float) -> Floats:
-        """1 for the numbers of a trial that count, 0 for the others, shape (n_i,)."""
+    def _stretches(self, share: float) -> list[Stretch]:
+        """Return what of each trial is compared."""
+        each = zip(self.readers, self.floors, self._bounds[:, 0], strict=True)
         if share >= 1.0:
-            return np.ones(self.floors[trial].size)
-        floor, reader = self.floors[trial], self.readers[trial]
-        last = share * reader.duration_s - self._bounds[trial, 0]
-        parts = [reader.observed.time_s[kept] <= last for kept in floor.valid.values()]
-        return np.concatenate([*parts, np.zeros(len(floor.outcome_scale))]).astype(np.float64)
+            return [Stretch.whole(reader, floor) for reader, floor, _ in each]
+        return [Stretch.beginning(reader, floor, share * reader.duration_s - bound) for reader, floor, bound in each]
 
-    def _outcomes(self, trial: int, path: Path, camera: Floats) -> Floats:
-        terms = self.readers[trial].outcome_terms(path, camera)
-        return np.array([terms[name] * scale for name, scale in self.floors[trial].outcome_scale.items()])
+    def _whitened(self, stretch: Stretch, path: Path | None, local: Floats, shared: Floats) -> Floats:
+        if path is None:
+            return np.full(len(stretch.counts), _NOT_RUN)
+        return stretch.whitened(path, local, shared)
 
-    def _clock(self, trial: int, path: Path | None, share: float) -> float:
+    def _clock(self, trial: int, path: Path | None, stretch: Stretch) -> float:
         """Return the best of some offsets of a trial's clock: a body that snaps over makes several minima."""
-        floor, reader, bound = self.floors[trial], self.readers[trial], self._bounds[trial, 0]
+        floor, reader, bound = stretch.floor, stretch.reader, self._bounds[trial, 0]
         if path is None or not len(reader.observed.time_s) or bound == 0.0:
             return 0.0
-        last = share * reader.duration_s - bound if share < 1.0 else np.inf
         clocks = bound * _CLOCKS
         losses = (clocks / self.local_sigmas[trial, 0]) ** 2
         differences = reader.differences_by_clock(path, clocks)
         for name, kept in floor.valid.items():
-            early = reader.observed.time_s[kept] <= last
-            values = (floor.whiten[name] @ differences[name][:, kept].T) * early[:, None]
+            values = floor.whiten[name] @ differences[name][:, kept].T
             if name in ("x", "y") and len(values):
                 # What a shift of the origin cannot explain.
-                shift = floor.whiten[name].sum(axis=1) * early
+                shift = floor.whiten[name].sum(axis=1)
                 weight = (self.local_sigmas[trial, 1]) ** -2
                 values = values - np.outer(shift, shift @ values) / (shift @ shift + weight)
             losses += np.sum(np.minimum(values**2, _OUTLIER**2), axis=0)
@@ -319,7 +315,7 @@ class Comparison:
         local: Floats,
         shared: Floats,
         train: set[int],
-        share: float,
+        stretches: Sequence[Stretch],
         held: bool,
     ) -> tuple[Floats, Floats]:
         shared_weight = 1.0 / self.shared_sigmas**2
@@ -328,23 +324,20 @@ class Comparison:
             right[2:] = 0.0
         blocks: dict[int, tuple[Floats, Floats, Floats]] = {}
         for i, path in enumerate(paths):
-            floor, reader = self.floors[i], self.readers[i]
             if path is None:
                 continue
+            floor, reader = stretches[i].floor, stretches[i].reader
             table = np.empty((0, 6))
             if len(reader.observed.time_s):
                 found = reader.linearised(path, local[i], shared[:2])
                 table = np.concatenate([floor.whiten[name] @ found[name][kept] for name, kept in floor.valid.items()])
-            outcomes = self._outcomes(i, path, shared[:2])
+            outcomes = stretches[i].outcomes(path, shared[:2])
             table = np.vstack([table, np.column_stack([np.zeros((len(outcomes), 5)), outcomes])])
             a, r = table[:, :3], table[:, 5] - floor.tolerance @ shared[2:]
             g = np.hstack([table[:, 3:5], np.zeros_like(floor.tolerance) if held else -floor.tolerance])
             # One trial that the model cannot follow must not turn the camera of all.
-            counted = np.sqrt(self.weight(i, r))
+            counted = np.sqrt(_weight(r[: floor.tracked], self.floors[i].tracked))
             a, g, r = counted * a, counted * g, counted * r
-            if share < 1.0:
-                counts = self._counts(i, share)
-                a, g, r = a * counts[:, None], g * counts[:, None], r * counts
             weight = 1.0 / self.local_sigmas[i] ** 2
             inverse = np.linalg.inv(a.T @ a + np.diag(weight))
             by_shared, own = a.T @ g, a.T @ r + weight * local[i]
@@ -358,3 +351,8 @@ class Comparison:
         for i, (inverse, by_shared, own) in blocks.items():
             local[i] = np.clip(local[i] - inverse @ (own + by_shared @ change), -self._bounds[i], self._bounds[i])
         return local, shared
+
+
+def _weight(track: Floats, count: int) -> float:
+    """Return how much a track of so many numbers counts, whose differences are given so far as they are compared."""
+    return 1.0 / (1.0 + robust_cost(track) / (FAR * count)) if count else 1.0

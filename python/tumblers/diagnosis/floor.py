@@ -110,6 +110,21 @@ class Floor:
         """Number of numbers that were measured, outcomes with them."""
         return self.tracked + len(self.outcome_scale)
 
+    def beginning(self, frames: int, counts: NDArray[np.bool_]) -> Floor:
+        """Return the noise of the first frames, without outcomes.
+
+        Parameters
+        ----------
+        frames
+            How many.
+        counts
+            Which of all numbers are theirs, shape (k,).
+        """
+        valid = {name: kept[:frames] for name, kept in self.valid.items()} if frames else {}
+        found = {name: int(kept.sum()) for name, kept in valid.items()}
+        whiten = {name: self.whiten[name][:count, :count] for name, count in found.items()}
+        return replace(self, whiten=whiten, valid=valid, outcome_scale={}, tolerance=self.tolerance[counts])
+
 
 def _scaled_moment(scenario: Scenario) -> Scenario:
     robot = scenario.robot

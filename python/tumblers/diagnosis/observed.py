@@ -6,7 +6,7 @@ which it gathers speed; that it slides counts as an outcome. Where it catches ag
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import radians
 
 import numpy as np
@@ -71,6 +71,15 @@ class Observed:
         """Names of what is compared, in the order of `CHANNELS`."""
         turned = () if self.orientation is None else ("tilt", "heading", "twist")
         return tuple(name for name in CHANNELS if name in self.values or name in turned)
+
+    def beginning(self, frames: int) -> Observed:
+        """Return the first so many frames of what is compared."""
+        return replace(
+            self,
+            time_s=self.time_s[:frames],
+            values={name: values[:frames] for name, values in self.values.items()},
+            orientation=None if self.orientation is None else self.orientation[:frames],
+        )
 
     def found(self, channel: str) -> NDArray[np.bool_]:
         """Return in which frames a channel was not lost, shape (n,)."""

@@ -12,7 +12,7 @@ frame: about x it is a tilt, about z a heading, about y a twist.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import degrees, log
 
 import numpy as np
@@ -64,6 +64,10 @@ class Reader:
         if isinstance(scenario.field, RotatingField):
             way = scenario.robot.body().hull_perimeter_m * scenario.field.frequency_Hz * duration_s
         return cls(observed, duration_s, way)
+
+    def beginning(self, frames: int) -> Reader:
+        """Return the reader of the first so many frames."""
+        return replace(self, observed=self.observed.beginning(frames))
 
     def differences(self, path: Path, local: Floats, camera: Floats) -> dict[str, Floats]:
         """Return `measured - model` by channel, m or rad, shape (n,), NaN where lost.
@@ -182,6 +186,8 @@ class Reader:
         position, orientation = path.at(np.concatenate([time, time + _TIME_STEP_S]) + local[0])
         wrong = self._wrong(*_through(position, orientation, local, camera), 2)
         position, orientation = position[:count], orientation[:count]
+        turned = self.observed.orientation is not None
+        up = _upward(orientation) if turned else np.empty((count, 3))
         tables: dict[str, Floats] = {}
         for name, values in wrong.items():
             table = np.zeros((count, 6))
@@ -191,8 +197,7 @@ class Reader:
                 table[:, 1], table[:, 3], table[:, 4] = -1.0, position[:, 1], -position[:, 0]
             elif name == "y":
                 table[:, 2], table[:, 3], table[:, 4] = -1.0, -position[:, 0], -position[:, 1]
-            elif self.observed.orientation is not None and name in ("tilt", "twist", "heading"):
-                up = _upward(orientation)
+            elif turned and name in ("tilt", "twist", "heading"):
                 table[:, 3] = -up[:, {"tilt": 0, "twist": 1, "heading": 2}[name]]
             elif name == "heading":
                 table[:, 3] = -np.cos(tilt_of(body_axis(orientation)))
