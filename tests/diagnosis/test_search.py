@@ -129,6 +129,28 @@ def _sliding_factor() -> float:
     return low
 
 
+def test_a_gap_is_not_hidden_by_the_noise_around_what_closes_it() -> None:
+    # Where the body slides, small changes move it much: held against that noise, that it holds would look right.
+    dataset = measure(plan(LYING, duration_s=0.28), (FrictionCoefficient(factor=_sliding_factor()),))
+    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
+    search = Search(fitter, [FrictionCoefficient], quiet, 0)
+    best, nominal = sorted(search.contenders(), key=lambda c: c.total)
+    assert best.names == ("friction_coefficient",)
+    assert search._beside(nominal, best).total < best.total + CLEAR
+    assert nominal.total > best.total + 100.0
+    assert nominal.total == search._beside(nominal, nominal).total
+
+
+def test_two_that_say_the_same_are_as_likely_whosever_noise_is_wide() -> None:
+    dataset = measure(plan(LYING, duration_s=0.28), (FrictionCoefficient(factor=_sliding_factor()),))
+    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
+    search = Search(fitter, [FrictionCoefficient], quiet, 0)
+    best = next(c for c in search.contenders() if c.names)
+    wronged = replace(best, cost=best.cost + 50.0)
+    _, _, held = search._against_the_best(of_nominal(fitter), [best, wronged])
+    assert held.total == pytest.approx(best.total, abs=1.0)
+
+
 def test_the_wavelength_of_a_roughness_is_found_from_the_beginnings() -> None:
     # Heights of one wavelength tell nothing of another: no fit from the middle of the range finds its way.
     truth = SurfaceRoughness(wavelength_m=4e-3, cosine_m=(-5e-7, 1e-6, 2e-6), sine_m=(2e-7, -1e-6, -2e-6))

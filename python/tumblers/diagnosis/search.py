@@ -242,17 +242,26 @@ class Search:
         best = contenders[0]
         made = [best]
         for contender in (nominal, *contenders[1:]):
-            if contender.total <= best.total + _NEAR:
-                self.fitter.take_likeliest_noise(contender.effects, best.effects)
-                other = (
-                    of_nominal(self.fitter)
-                    if contender.fit is None
-                    else replace(of_fit(self.fitter, self.fitter.again(contender.fit)), settled=contender.settled)
-                )
-                made.append(min(contender, other, key=_total))
-            else:
-                made.append(contender)
+            near = contender.total <= best.total + _NEAR
+            other = self._beside(contender, best) if near else contender
+            lent = other.total < contender.total and self._says_the_same(contender, best, other)
+            made.append(other if lent else contender)
         return made
+
+    def _says_the_same(self, contender: Contender, best: Contender, lent: Contender) -> bool:
+        """Return whether a contender is about as near to the best against its own noise as against the best's.
+
+        What the best changes moves more easily where it is at work: its noise may hide the very gap that it closes.
+        """
+        own = self._beside(contender, contender)
+        return own.total - self._beside(best, contender).total < lent.total - best.total + CLEAR
+
+    def _beside(self, contender: Contender, around: Contender) -> Contender:
+        """Hold a contender against the noise around another."""
+        self.fitter.take_likeliest_noise(contender.effects, around.effects)
+        if contender.fit is None:
+            return of_nominal(self.fitter)
+        return replace(of_fit(self.fitter, self.fitter.again(contender.fit)), settled=contender.settled)
 
     def _against_itself(self, fit: Fit) -> Contender:
         """Hold a fit against its own noise."""
