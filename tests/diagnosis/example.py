@@ -140,7 +140,7 @@ def made(**changes: Any) -> Diagnosis:
         time, measured, nominal, explained = rolled(frequency)
         overlays.append(Overlay(trial.id, time, measured, nominal, explained, {}))
     nothing = np.empty(0)
-    overlays.append(Overlay("slope30", nothing, {}, {}, {}, {"climbs": (1.0, 0.04, 0.97)}))
+    overlays.append(Overlay("slope30", nothing, {}, {}, {}, {"climbed_share": (1.0, -85.1, 0.97)}))
     overlays.append(Overlay("tilt05", nothing, {}, {}, {}, {"tilt_deg": (38.5, 38.1, 38.2)}))
     before = [1.1, 0.9, 1.0, 1.3, 9.0, 18.0, 34.0, 4.0, 0.5]
     by_trial = {trial: (gap + 0.2, gap, min(gap, 1.2)) for trial, gap in zip(ids, before, strict=True)}
@@ -251,7 +251,7 @@ def outcomes_only() -> Diagnosis:
     """Return a diagnosis of outcomes that leave two effects tied, with what could not be measured as NaN."""
     data = lab(tracks=False)
     nothing = np.empty(0)
-    overlays = tuple(Overlay(t.id, nothing, {}, {}, {}, {"climbs": (1.0, 0.0, NAN)}) for t in data.trials)
+    overlays = tuple(Overlay(t.id, nothing, {}, {}, {}, {"climbed_share": (1.0, 0.0, NAN)}) for t in data.trials)
     return made(
         dataset=data,
         effects=(EffectEstimate("friction_coefficient", 0.5, {"factor": Interval(1.2, NAN, NAN, False)}, ("x",)),),

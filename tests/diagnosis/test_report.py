@@ -97,6 +97,15 @@ def test_a_report_without_some_parts_is_whole(diagnosis: Diagnosis) -> None:
     assert headline(diagnosis) in read.words
 
 
+def test_outcomes_are_in_words() -> None:
+    page = report_html(small(overlays=made().overlays[-2:]))
+    # Measured, nominal (it slides), with the effects.
+    cells = re.search(r"<td>slope30</td><td>climbs</td>(.*?)</tr>", page)
+    assert cells is not None
+    assert re.findall(r">(\w+)</td>", cells.group(1)) == ["yes", "no", "yes"]
+    assert "<td>tilt05</td><td>tilt</td>" in page
+
+
 def test_what_a_user_wrote_is_shown_and_never_run() -> None:
     evil = '<script>alert("&")</script>'
     data = lab(title=evil)

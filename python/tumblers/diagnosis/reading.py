@@ -24,13 +24,13 @@ from ..scenario import Scenario
 from .observed import Observed
 from .pose import Path, body_axis, heading_of, relative_turn, tilt_of
 
-__all__ = ["Reader", "reached", "seen_by"]
+__all__ = ["CLIMBED", "Reader", "reached", "seen_by"]
 
 Floats = NDArray[np.float64]
 
 # Share of the way without slip from which a slope counts as climbed, share of the way slid from which a model slides as
 # well, and how blurred these borders are.
-_CLIMBED, _SLIDES = 0.1, 0.3
+CLIMBED, _SLIDES = 0.1, 0.3
 _BLUR = 0.05
 # A human who writes down the wrong outcome.
 _LAPSE = 0.01
@@ -205,7 +205,7 @@ class Reader:
         return tables
 
 
-def reached(share: float, does: bool, border: float = _CLIMBED) -> float:
+def reached(share: float, does: bool, border: float = CLIMBED) -> float:
     """Return the scaled difference of an outcome of yes or no, `±√(-2 log P)`, with a smooth likelihood.
 
     ```text

@@ -12,19 +12,20 @@ from .diagnosis import Diagnosis
 from .phrase import title_of
 from .plots.overlay import plot_overlay
 from .plots.svg import WIDTH_IN, svg_bytes
-from .quantity import percent, plain, rounded, sigmas
+from .quantity import plain, rounded, sigmas
+from .reading import CLIMBED
 from .result import NextTrial
 from .words import observation_words, reason_words, set_words
 
 __all__ = ["floor_part", "next_part", "overlay_part"]
 
 _MOST_OVERLAYS = 6
+_CLIMBS = "climbed_share"
+# Kinds of outcome in words, with their units.
 _OUTCOMES = {
-    "mean_speed_m_per_s": "m/s",
-    "mean_speed": "m/s",
-    "tilt_deg": "degrees",
-    "tilt": "degrees",
-    "climbs": "1",
+    "mean_speed_m_per_s": ("mean speed", "m/s"),
+    "tilt_deg": ("tilt", "degrees"),
+    _CLIMBS: ("climbs", "1"),
 }
 
 
@@ -50,7 +51,7 @@ def overlay_part(diagnosis: Diagnosis) -> str:
     if others:
         pictures += f"<details><summary>{len(rest)} more trials, with smaller gaps</summary>\n{others}</details>\n"
     rows = [
-        [escape(overlay.trial), escape(kind.replace("_", " ")), *(escape(_outcome(kind, value)) for value in values)]
+        [escape(overlay.trial), _OUTCOMES[kind][0], *(escape(_outcome(kind, value)) for value in values)]
         for overlay in diagnosis.overlays
         for kind, values in overlay.outcomes.items()
     ]
@@ -130,9 +131,9 @@ def _seen(trial: LabTrial) -> str:
 
 
 def _outcome(kind: str, value: float) -> str:
-    if kind == "climbs":
-        return "yes" if value > 0.99 else "no" if value < 0.01 else percent(value)
-    return plain(value, _OUTCOMES.get(kind, ""))
+    if kind == _CLIMBS and isfinite(value):
+        return "yes" if value >= CLIMBED else "no"
+    return plain(value, _OUTCOMES[kind][1])
 
 
 def _finite(value: float) -> float:
