@@ -14,11 +14,13 @@ from matplotlib.figure import Figure
 from tumblers import InputError
 from tumblers.diagnosis import plots
 from tumblers.diagnosis.diagnosis import FILES, Diagnosis
+from tumblers.diagnosis.phrase import title_of
 from tumblers.diagnosis.report import report_html
 from tumblers.diagnosis.result import (
     Region,
 )
 from tumblers.diagnosis.words import headline
+from tumblers.effects import CATALOGUE
 
 from .example import lab, made, no_gap, outcomes_only, small, wrench
 
@@ -95,6 +97,13 @@ def test_a_report_without_some_parts_is_whole(diagnosis: Diagnosis) -> None:
     read = Reader(report_html(diagnosis))
     assert " nan" not in read.words.lower()
     assert headline(diagnosis) in read.words
+
+
+def test_everything_that_is_ruled_out_is_named() -> None:
+    names = list(CATALOGUE)[:9]
+    words = Reader(report_html(small(ruled_out=dict.fromkeys(names, "f01")))).words
+    assert f"{', '.join(map(title_of, names))} by trial f01" in words
+    assert "more in the report" not in words
 
 
 def test_outcomes_are_in_words() -> None:

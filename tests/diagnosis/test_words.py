@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tumblers.diagnosis.phrase import phrase_of
+from tumblers.diagnosis.phrase import phrase_of, title_of
 from tumblers.diagnosis.quantity import percent, rounded, with_interval
 from tumblers.diagnosis.result import (
     EffectEstimate,
@@ -67,6 +67,15 @@ def test_the_summary_says_where_what_how_far_ties_and_next() -> None:
     assert "substrate tilt, friction coefficient by trial f01 (10 mT at 1 Hz, level)" in said["ruled out"]
     assert said["next trial"].startswith("20 mT at 15 Hz, level, 2 s: separates stray field gradient from viscous drag")
     assert max(map(len, summary(made()).splitlines())) <= 100
+
+
+def test_of_what_is_ruled_out_a_terminal_names_a_few_and_the_report_all() -> None:
+    names = list(CATALOGUE)[:9]
+    diagnosis = made(ruled_out=dict.fromkeys(names, "f01"))
+    assert dict(points(diagnosis))["ruled out"].endswith("; 3 more in the report.")
+    said = dict(points(diagnosis, whole=True))["ruled out"]
+    assert all(title_of(name) in said for name in names)
+    assert "more in the report" not in said
 
 
 def test_cautions_name_what_weakens_a_diagnosis() -> None:

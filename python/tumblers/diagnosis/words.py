@@ -143,13 +143,15 @@ def headline(diagnosis: Diagnosis) -> str:
     )
 
 
-def points(diagnosis: Diagnosis) -> tuple[tuple[str, str], ...]:
+def points(diagnosis: Diagnosis, *, whole: bool = False) -> tuple[tuple[str, str], ...]:
     """Return what follows the verdict: labels and sentences, the most important first.
 
     Parameters
     ----------
     diagnosis
         What `diagnose` returned.
+    whole
+        Whether everything that is ruled out is named, as in the report, to which a terminal points for the rest.
     """
     said: list[tuple[str, str]] = []
     where = _where(diagnosis)
@@ -159,7 +161,7 @@ def points(diagnosis: Diagnosis) -> tuple[tuple[str, str], ...]:
     said += [("what", _what(effect)) for effect in diagnosis.effects]
     said.append(("how far", _how_far(diagnosis)))
     said += [("tied", text) for text in _ties(diagnosis)]
-    said += [("ruled out", text) for text in _ruled_out(diagnosis)]
+    said += [("ruled out", text) for text in _ruled_out(diagnosis, None if whole else _MOST_RULED_OUT)]
     if diagnosis.next_trials:
         first, *others = diagnosis.next_trials
         nothing = "" if first.within_ranges else "none like those done so far tells them apart; beyond them "
@@ -340,16 +342,16 @@ def _ties(diagnosis: Diagnosis) -> Iterator[str]:
             yield f"these trials cannot tell {title_of(effect.name)} from {others}."
 
 
-def _ruled_out(diagnosis: Diagnosis) -> Iterator[str]:
+def _ruled_out(diagnosis: Diagnosis, most: int | None) -> Iterator[str]:
     by_trial: dict[str, list[str]] = {}
-    for name, trial in list(diagnosis.ruled_out.items())[:_MOST_RULED_OUT]:
+    for name, trial in list(diagnosis.ruled_out.items())[:most]:
         by_trial.setdefault(trial, []).append(title_of(name))
     known = {trial.id: trial for trial in diagnosis.dataset.trials}
     said = [
         f"{', '.join(names)} by trial {trial}" + (f" ({condition_of(known[trial])})" if trial in known else "")
         for trial, names in by_trial.items()
     ]
-    more = len(diagnosis.ruled_out) - _MOST_RULED_OUT
+    more = 0 if most is None else len(diagnosis.ruled_out) - most
     if said:
         yield "; ".join(said) + (f"; {more} more in the report" if more > 0 else "") + "."
 
