@@ -81,6 +81,7 @@ def test_the_papers_outcomes_leave_two_causes_and_a_trial_that_parts_them() -> N
     diagnosis = diagnose(dataset.load(EXAMPLE), jobs=2)
     assert diagnosis.verdict == "explained"
     pair = {"friction_coefficient", "line_contact_adhesion"}
+    assert "Every measured number counts for itself in probabilities and intervals." in diagnosis.assumptions
     (first,) = diagnosis.effects
     assert first.name in pair
     assert pair - {first.name} <= set(first.confounded_with)

@@ -69,6 +69,12 @@ def test_the_summary_says_where_what_how_far_ties_and_next() -> None:
     assert max(map(len, summary(made()).splitlines())) <= 100
 
 
+def test_amounts_of_two_nouns_explain_together() -> None:
+    camera = {"scale": Interval(1.045, 1.036, 1.054), "heading_deg": Interval(0.0, -2.0, 2.0)}
+    words = headline(made(effects=(EffectEstimate("camera_calibration", 0.9, camera, ()),)))
+    assert "a scale of 1.045 ± 0.009 and a heading of 0° ± 2° explain 93 %" in words
+
+
 def test_of_what_is_ruled_out_a_terminal_names_a_few_and_the_report_all() -> None:
     names = list(CATALOGUE)[:9]
     diagnosis = made(ruled_out=dict.fromkeys(names, "f01"))

@@ -273,6 +273,15 @@ def _kinds(effects: Sequence[str] | None) -> list[type[Effect]]:
     return [kind for kind in CATALOGUE.values() if kind in chosen]
 
 
+def _weight(dispersion: float) -> str:
+    written = f"{dispersion:.3g}"
+    return (
+        "Every measured number counts for itself"
+        if written == "1"
+        else f"Every {written} measured numbers count as one"
+    )
+
+
 def _assumptions(comparison: Comparison, attribution: Attribution) -> tuple[str, ...]:
     simulator, sensor = comparison.simulator, comparison.dataset.sensor
     tried = sorted(c.names[0] for c in attribution.contenders if len(c.names) == 1)
@@ -294,7 +303,7 @@ def _assumptions(comparison: Comparison, attribution: Attribution) -> tuple[str,
         + " are no gap: the change to it is fitted in every hypothesis.",
         "A trial that a hypothesis cannot follow at all counts by its logarithm.",
         "In a trial left out, the sensor's nuisances and the nominal numbers are still fitted; effects are not.",
-        f"Every {attribution.dispersion:.3g} measured numbers count as one in probabilities and intervals.",
+        f"{_weight(attribution.dispersion)} in probabilities and intervals.",
         f"Tried were {', '.join(tried)}." if tried else "No effect that was tried can be at work in these trials.",
         f"However strong the evidence, {100.0 * LAPSE:.0f} % of the probability belongs to all hypotheses alike.",
         "Before anything is fitted, 40 % for no gap, 45 % for one effect, 15 % for two; no more than two are tried.",

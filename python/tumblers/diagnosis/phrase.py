@@ -27,10 +27,13 @@ class Phrase:
         A clause that says what is the matter: ``the substrate is not level``.
     amount
         A noun and its numbers, which can be a sentence's subject: ``a slope of 2.1 ± 0.3° along +y``.
+    plural
+        Whether the amount is several nouns.
     """
 
     cause: str
     amount: str
+    plural: bool = False
 
 
 def title_of(name: str) -> str:
@@ -156,6 +159,7 @@ def _size(found: _Found) -> Phrase:
     return Phrase(
         f"the robot is {' and '.join(words) or 'of another size'} than drawn",
         f"a length of {found.text('length_factor')} and a height of {found.text('height_factor')} times the nominal",
+        plural=True,
     )
 
 
@@ -273,6 +277,7 @@ def _camera(found: _Found) -> Phrase:
     return Phrase(
         "the camera is off, a gap of the measurement and not of the model",
         f"a scale of {found.text('scale')} and a heading of {found.text('heading_deg')}",
+        plural=True,
     )
 
 

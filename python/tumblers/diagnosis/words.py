@@ -115,14 +115,15 @@ def headline(diagnosis: Diagnosis) -> str:
         causes = _capital(" and ".join(phrase.cause for phrase in phrases)) + scope
         amounts = " and ".join(phrase.amount.rstrip(",") if len(phrases) > 1 else phrase.amount for phrase in phrases)
         together = ", together," if len(phrases) > 1 else ""
+        plural = len(phrases) > 1 or phrases[0].plural
         if gap.shrink.estimate < _FORETOLD:
-            close = "close" if len(phrases) > 1 else "closes"
+            close = "close" if plural else "closes"
             return (
                 f"{causes}: {amounts}{together} {close} the gap, from {_sigmas(gap.after_nuisance_only)} to "
                 f"{_sigmas(diagnosis.ranking[0].gap)} where it is fitted; the trials that show it are too few for the "
                 "others to foretell it."
             )
-        return f"{causes}: {amounts}{together} {'explain' if len(phrases) > 1 else 'explains'} {_explained(gap)}."
+        return f"{causes}: {amounts}{together} {'explain' if plural else 'explains'} {_explained(gap)}."
     tried = sum(len(hypothesis.effects) == 1 for hypothesis in diagnosis.ranking)
     none = (
         f"none of the {tried} effects that were tried closes it" if tried > 1 else "no effect that was tried closes it"
