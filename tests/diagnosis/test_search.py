@@ -14,6 +14,7 @@ from tumblers.diagnosis.contender import of_fit, of_nominal
 from tumblers.diagnosis.fit import Fitter
 from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.loss import robust_cost
+from tumblers.diagnosis.own_noise import against_the_best, beside
 from tumblers.diagnosis.search import Search, _firsts
 from tumblers.diagnosis.simulator import STEPS_S, Job, Simulator
 from tumblers.diagnosis.thresholds import CLEAR
@@ -136,9 +137,9 @@ def test_a_gap_is_not_hidden_by_the_noise_around_what_closes_it() -> None:
     search = Search(fitter, [FrictionCoefficient], quiet, 0)
     best, nominal = sorted(search.contenders(), key=lambda c: c.total)
     assert best.names == ("friction_coefficient",)
-    assert search._beside(nominal, best).total < best.total + CLEAR
+    assert beside(fitter, nominal, best).total < best.total + CLEAR
     assert nominal.total > best.total + 100.0
-    assert nominal.total == search._beside(nominal, nominal).total
+    assert nominal.total == beside(fitter, nominal, nominal).total
 
 
 def test_two_that_say_the_same_are_as_likely_whosever_noise_is_wide() -> None:
@@ -147,7 +148,7 @@ def test_two_that_say_the_same_are_as_likely_whosever_noise_is_wide() -> None:
     search = Search(fitter, [FrictionCoefficient], quiet, 0)
     best = next(c for c in search.contenders() if c.names)
     wronged = replace(best, cost=best.cost + 50.0)
-    _, _, held = search._against_the_best(of_nominal(fitter), [best, wronged])
+    _, _, held = against_the_best(fitter, of_nominal(fitter), [best, wronged])
     assert held.total == pytest.approx(best.total, abs=1.0)
 
 

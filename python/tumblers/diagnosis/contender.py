@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +12,7 @@ from ..effects.base import Effect
 from .comparison import Residual
 from .fit import Fit, Fitter
 
-__all__ = ["Contender", "of_fit", "of_nominal"]
+__all__ = ["Contender", "likeliest", "likeliest_first", "of_fit", "of_nominal"]
 
 Floats = NDArray[np.float64]
 
@@ -75,3 +76,17 @@ def of_nominal(fitter: Fitter) -> Contender:
     comparison = fitter.comparison
     residual = comparison.residual(comparison.nominal_paths)
     return Contender((), None, residual, fitter.cost(residual, np.zeros(1)), comparison.log_determinant)
+
+
+def likeliest_first(contenders: Iterable[Contender]) -> list[Contender]:
+    """Return contenders by their likelihood, of equals the one that came first first."""
+    return sorted(contenders, key=_total)
+
+
+def likeliest(contenders: Iterable[Contender]) -> Contender:
+    """Return the likeliest of some contenders, the first of equals."""
+    return min(contenders, key=_total)
+
+
+def _total(contender: Contender) -> float:
+    return contender.total

@@ -17,10 +17,20 @@ from numpy.typing import NDArray
 from ..effects.base import Effect
 from ..progress import OnPhase
 from .beginnings import MANY, from_beginnings, promise
-from .contender import Contender, of_fit, of_nominal
-from .fit import Fit, Fitter
+from .contender import Contender, likeliest, likeliest_first, of_fit, of_nominal
+from .fit import Fitter
 from .hypothesis import Hypothesis
 from .nearby import points_around
+from .own_noise import (
+    ENOUGH,
+    IDLE_POINTS,
+    POLISH_POINTS,
+    again,
+    against_itself,
+    against_the_best,
+    each_by_itself,
+    settled,
+)
 from .predictive import is_right, mean_square
 from .thresholds import CLEAR, beyond_thresholds
 
@@ -32,14 +42,8 @@ Floats = NDArray[np.float64]
 # another look, for the prior asks for as much.
 _WORTH = 9.0
 # Trial points of a fit: of an effect that leads after the scan (so many do), and of another (where nothing is better
-# than neutral only the derivatives are taken); where a fit has only to follow another noise; of a pair, and where a
-# good fit is taken further.
-_LEADING, _LEADING_POINTS, _POINTS, _IDLE_POINTS, _PAIR_POINTS, _POLISH_POINTS = 6, 6, 4, 2, 4, 6
-# How many fits are held against their own noise, how often it is measured after a further fit at most, and what that
-# must take off the objective for another round.
-_SETTLED, _ROUNDS, _ENOUGH = 2, 2, 5.0
-# What comes so near to the best is held against its own noise, so many at most.
-_NEAR, _MOST_NEAR = 300.0, 6
+# than neutral only the derivatives are taken); and of a pair.
+_LEADING, _LEADING_POINTS, _POINTS, _PAIR_POINTS = 6, 6, 4, 4
 # A gap is left where the mean square stays above this against the likeliest noise.
 _WANTING = 1.1
 # Hypotheses that are fitted again from the beginnings of the trials; and of those whose points over the range follow
@@ -93,20 +97,20 @@ class Search:
             return [nominal, *singles]
         if self.comparison.halve_steps_for(singles[0].effects):
             self.fitter.take_likeliest_noise(())
-            nominal, singles = of_nominal(self.fitter), self._judged_again(singles)
-        singles = self._settled(singles)
-        singles = sorted([self._shaken(singles[0]), *singles[1:]], key=_total)
+            nominal, singles = of_nominal(self.fitter), again(self.fitter, singles)
+        singles = settled(self.fitter, singles, self.tell)
+        singles = likeliest_first([self._shaken(singles[0]), *singles[1:]])
         # What is weak is found where it starts: only a strong cause has minima of its own, far away.
         strong = not is_right(self.comparison, nominal.residual)
         if strong and self._is_wanting(singles[0]):
-            singles = self._settled(self._far(singles))
+            singles = settled(self.fitter, self._far(singles), self.tell)
         if singles[0].total > nominal.total - self.worth:
-            return self._against_the_best(nominal, self._each_by_itself(singles))
+            return against_the_best(self.fitter, nominal, each_by_itself(self.fitter, singles, self.tell))
         pairs = self._pairs(singles, strong)
         if pairs:
-            pairs = sorted([self._shaken(pairs[0]), *pairs[1:]], key=_total)
+            pairs = likeliest_first([self._shaken(pairs[0]), *pairs[1:]])
             singles = [self._nested(pairs[0], singles[0]), *singles[1:]]
-        return self._against_the_best(nominal, self._each_by_itself([*singles, *pairs]))
+        return against_the_best(self.fitter, nominal, each_by_itself(self.fitter, [*singles, *pairs], self.tell))
 
     def _far(self, singles: Sequence[Contender]) -> list[Contender]:
         """Search far away for the best, and where they leave a gap for those that no local fit can be trusted with."""
@@ -122,7 +126,7 @@ class Search:
                 many = len(contender.point) > MANY and contender.names != singles[0].names
                 if many or (k in promising and promises[k] > CLEAR):
                     made[k] = from_beginnings(self.fitter, contender, self.possible, self.seed)
-        return sorted(made, key=_total)
+        return likeliest_first(made)
 
     def _nested(self, pair: Contender, single: Contender) -> Contender:
         """Fit the best single effect again from where it is in a pair: alone it must not have been fitted less far."""
@@ -130,12 +134,8 @@ class Search:
             return single
         assert single.fit is not None
         (kind,) = single.fit.hypothesis.kinds
-        alone = self._alone(pair, kind, _POLISH_POINTS)
-        return min(single, replace(alone, settled=True), key=_total)
-
-    def _judged_again(self, contenders: Sequence[Contender]) -> list[Contender]:
-        """Hold the same fits against another noise, the best first."""
-        return sorted((of_fit(self.fitter, self.fitter.again(fit)) for fit in _fits(contenders)), key=_total)
+        alone = self._alone(pair, kind, POLISH_POINTS)
+        return likeliest([single, replace(alone, settled=True)])
 
     def _singles(self, nominal: Contender) -> list[Contender]:
         self.tell("first look at every effect", 0, 1)
@@ -148,9 +148,9 @@ class Search:
             cost, start = points[0]
             count = (_LEADING_POINTS if cost in leading else _POINTS) if np.any(start) else 1
             singles.append(of_fit(self.fitter, self.fitter.fit(hypothesis, start, evaluations=count)))
-        if singles and not is_right(self.comparison, min([nominal, *singles], key=_total).residual):
+        if singles and not is_right(self.comparison, likeliest([nominal, *singles]).residual):
             singles = self._searched(nominal, singles)
-        return sorted(singles, key=_total)
+        return likeliest_first(singles)
 
     def _is_wanting(self, contender: Contender) -> bool:
         return mean_square(self.comparison, contender.residual) > _WANTING
@@ -168,31 +168,8 @@ class Search:
             for point, residual in zip(points, fitter.residuals(hypothesis, points), strict=True):
                 if fitter.cost(residual, point) < made[k].cost - CLEAR:
                     other = of_fit(fitter, fitter.fit(hypothesis, point, evaluations=_LEADING_POINTS))
-                    made[k] = min(made[k], other, key=_total)
+                    made[k] = likeliest([made[k], other])
         return made
-
-    def _settled(self, contenders: Sequence[Contender]) -> list[Contender]:
-        """Hold the best so many against their own noise and fit them on; the best first."""
-        made = sorted(contenders, key=_total)
-        for k, contender in enumerate(made[:_SETTLED]):
-            if contender.settled:
-                continue
-            self.tell("another look at the best", k, _SETTLED)
-            assert contender.fit is not None
-            best = self._against_itself(contender.fit)
-            for _ in range(_ROUNDS):
-                assert best.fit is not None
-                fit = self.fitter.fit(best.fit.hypothesis, best.point, evaluations=_POLISH_POINTS)
-                other = self._against_itself(fit) if fit.cost < best.cost - _ENOUGH else best
-                if other.total >= best.total:
-                    break
-                best = other
-            assert best.fit is not None
-            # The derivatives where it is, against its own noise.
-            self.fitter.take_likeliest_noise(best.effects)
-            here = self.fitter.fit(best.fit.hypothesis, best.point, evaluations=1)
-            made[k] = replace(of_fit(self.fitter, here), settled=True)
-        return sorted(made, key=_total)
 
     def _shaken(self, contender: Contender) -> Contender:
         """Look around a fit for a better one, which small local minima keep least squares from.
@@ -210,63 +187,11 @@ class Search:
             costs = [self.fitter.cost(residual, point) for residual, point in zip(residuals, points, strict=True)]
             starts = [points[n] for n in np.argsort(costs, kind="stable")[:_SHAKEN_FITS]]
             fits = [self.fitter.fit(hypothesis, start, evaluations=_SHAKEN_POINTS) for start in starts]
-            other = min((self._against_itself(fit) for fit in fits), key=_total)
-            if other.total > best.total - _ENOUGH:
+            other = likeliest(against_itself(self.fitter, fit) for fit in fits)
+            if other.total > best.total - ENOUGH:
                 break
             best = replace(other, settled=True)
         return best
-
-    def _each_by_itself(self, contenders: Sequence[Contender]) -> list[Contender]:
-        """Hold what comes near the best against its own noise too: another's may flatter it, or wrong it."""
-        made = sorted(contenders, key=_total)
-        count = 0
-        for k, contender in enumerate(made):
-            assert contender.fit is not None
-            if contender.settled or contender.total > made[0].total + _NEAR:
-                continue
-            self.tell("each against its own noise", count, _MOST_NEAR)
-            self.fitter.take_likeliest_noise(contender.effects)
-            fit = self.fitter.fit(contender.fit.hypothesis, contender.point, evaluations=_IDLE_POINTS)
-            made[k] = replace(of_fit(self.fitter, fit), settled=True)
-            count += 1
-            if count == _MOST_NEAR:
-                break
-        return sorted(made, key=_total)
-
-    def _against_the_best(self, nominal: Contender, contenders: Sequence[Contender]) -> list[Contender]:
-        """Hold all that come near the best against its noise too, and keep what is likelier.
-
-        Near a threshold the noise around two hypotheses that say the same can differ by much. What is better than
-        another has to be so against one noise.
-        """
-        best = contenders[0]
-        made = [best]
-        for contender in (nominal, *contenders[1:]):
-            near = contender.total <= best.total + _NEAR
-            other = self._beside(contender, best) if near else contender
-            lent = other.total < contender.total and self._says_the_same(contender, best, other)
-            made.append(other if lent else contender)
-        return made
-
-    def _says_the_same(self, contender: Contender, best: Contender, lent: Contender) -> bool:
-        """Return whether a contender is about as near to the best against its own noise as against the best's.
-
-        What the best changes moves more easily where it is at work: its noise may hide the very gap that it closes.
-        """
-        own = self._beside(contender, contender)
-        return own.total - self._beside(best, contender).total < lent.total - best.total + CLEAR
-
-    def _beside(self, contender: Contender, around: Contender) -> Contender:
-        """Hold a contender against the noise around another."""
-        self.fitter.take_likeliest_noise(contender.effects, around.effects)
-        if contender.fit is None:
-            return of_nominal(self.fitter)
-        return replace(of_fit(self.fitter, self.fitter.again(contender.fit)), settled=contender.settled)
-
-    def _against_itself(self, fit: Fit) -> Contender:
-        """Hold a fit against its own noise."""
-        self.fitter.take_likeliest_noise(fit.hypothesis.effects(fit.point))
-        return of_fit(self.fitter, self.fitter.again(fit))
 
     def _refined(self, contenders: Sequence[Contender], count: int) -> list[Contender]:
         """Fit the best so many again from points over their whole range, the beginnings of the trials first.
@@ -278,7 +203,7 @@ class Search:
             self.tell("points over the whole range", k, count)
             if k == 0 or len(contender.point) <= MANY:
                 made[k] = from_beginnings(self.fitter, contender, self.possible, self.seed)
-        return sorted(made, key=_total)
+        return likeliest_first(made)
 
     def _pairs(self, singles: Sequence[Contender], strong: bool) -> list[Contender]:
         """Add a second effect to the best; none where none shows."""
@@ -291,10 +216,10 @@ class Search:
             self._added(first, singles, found)
         if wanting:
             self._joined(singles, found)
-        pairs = sorted(found.values(), key=_total)
+        pairs = likeliest_first(found.values())
         if not pairs or pairs[0].total > singles[0].total - self.worth:
             return pairs
-        pairs = self._settled(pairs)
+        pairs = settled(self.fitter, pairs, self.tell)
         found = {frozenset(pair.names): pair for pair in pairs}
         # The best second may be the answer to a first that is wrong: with it held, is there a better first?
         best = pairs[0]
@@ -302,19 +227,19 @@ class Search:
         for n, kind in enumerate(best.fit.hypothesis.kinds):
             self.tell("exchanging one of the pair", n, 2)
             if kind.name not in firsts[0].names:
-                self._added(self._alone(best, kind, _IDLE_POINTS), singles[:_EXCHANGED], found)
-        pairs = sorted(found.values(), key=_total)
+                self._added(self._alone(best, kind, IDLE_POINTS), singles[:_EXCHANGED], found)
+        pairs = likeliest_first(found.values())
         # However little the best leaves: against a sharper noise another may leave as little.
         if strong:
             pairs = self._refined(pairs, _PAIRS_REFINED)
-        return self._settled(pairs)
+        return settled(self.fitter, pairs, self.tell)
 
     def _alone(self, pair: Contender, kind: type[Effect], points: int) -> Contender:
         """Return one effect of a pair, as it is within it, as a contender of its own."""
         assert pair.fit is not None
         hypothesis = next(h for h in self.possible if h.kinds == (kind,))
         mine = np.array([name == kind.name for name, _ in pair.fit.hypothesis.keys])
-        return self._against_itself(self.fitter.fit(hypothesis, pair.point[mine], evaluations=points))
+        return against_itself(self.fitter, self.fitter.fit(hypothesis, pair.point[mine], evaluations=points))
 
     def _added(self, first: Contender, singles: Sequence[Contender], found: dict[frozenset[str], Contender]) -> None:
         """Fit the seconds that promise most beside a first, against its noise."""
@@ -362,16 +287,8 @@ class Search:
             found[names] = contender
 
 
-def _fits(contenders: Sequence[Contender]) -> list[Fit]:
-    return [contender.fit for contender in contenders if contender.fit is not None]
-
-
 def _firsts(singles: Sequence[Contender]) -> list[Contender]:
     """Return those of the best, best first, that are near enough to be a first of a pair."""
     # A total may be negative, for a determinant may be small; what the best leaves never is.
     near = singles[0].total + _NEAR_BEST * singles[0].cost
     return [contender for contender in singles if contender.total <= near]
-
-
-def _total(contender: Contender) -> float:
-    return contender.total

@@ -1,0 +1,178 @@
+"""Contenders against the noise around themselves, and around the best.
+
+The noise around a hypothesis is what moves its paths (`Floor`). Another's may flatter a contender, or wrong it, so that
+what counts is held against its own. Near a threshold, though, the noise around two hypotheses that say the same can
+differ by much: to what comes near the best, and says the same, the noise around the best is lent where it is likelier
+against it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from ..progress import OnPhase
+from .contender import Contender, likeliest_first, of_fit, of_nominal
+from .fit import Fit, Fitter
+from .thresholds import CLEAR
+
+__all__ = [
+    "ENOUGH",
+    "IDLE_POINTS",
+    "POLISH_POINTS",
+    "again",
+    "against_itself",
+    "against_the_best",
+    "beside",
+    "each_by_itself",
+    "settled",
+]
+
+# Trial points of a fit that has only to follow another noise, and of a good one that is taken further.
+IDLE_POINTS, POLISH_POINTS = 2, 6
+# What takes so much off the objective asks for another round.
+ENOUGH = 5.0
+# How many fits are held against their own noise, and how often it is measured after a further fit at most.
+_SETTLED, _ROUNDS = 2, 2
+# What comes so near to the best is held against its own noise, so many at most.
+_NEAR, _MOST_NEAR = 300.0, 6
+
+
+def again(fitter: Fitter, contenders: Sequence[Contender]) -> list[Contender]:
+    """Hold the same fits against the noise of the moment, the likeliest first.
+
+    Parameters
+    ----------
+    fitter
+        Of the dataset.
+    contenders
+        The nominal model among them is left out.
+    """
+    fits = [contender.fit for contender in contenders if contender.fit is not None]
+    return likeliest_first(of_fit(fitter, fitter.again(fit)) for fit in fits)
+
+
+def against_itself(fitter: Fitter, fit: Fit) -> Contender:
+    """Hold a fit against its own noise.
+
+    Parameters
+    ----------
+    fitter
+        Of the dataset.
+    fit
+        Found against any noise.
+    """
+    fitter.take_likeliest_noise(fit.hypothesis.effects(fit.point))
+    return of_fit(fitter, fitter.again(fit))
+
+
+def settled(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase) -> list[Contender]:
+    """Hold the best so many against their own noise and fit them on; the best first.
+
+    Parameters
+    ----------
+    fitter
+        Of the dataset.
+    contenders
+        Without the nominal model.
+    tell
+        Is told the phase, how much of it is done, and of how much.
+    """
+    made = likeliest_first(contenders)
+    for k, contender in enumerate(made[:_SETTLED]):
+        if contender.settled:
+            continue
+        tell("another look at the best", k, _SETTLED)
+        assert contender.fit is not None
+        best = against_itself(fitter, contender.fit)
+        for _ in range(_ROUNDS):
+            assert best.fit is not None
+            fit = fitter.fit(best.fit.hypothesis, best.point, evaluations=POLISH_POINTS)
+            other = against_itself(fitter, fit) if fit.cost < best.cost - ENOUGH else best
+            if other.total >= best.total:
+                break
+            best = other
+        assert best.fit is not None
+        # The derivatives where it is, against its own noise.
+        fitter.take_likeliest_noise(best.effects)
+        here = fitter.fit(best.fit.hypothesis, best.point, evaluations=1)
+        made[k] = replace(of_fit(fitter, here), settled=True)
+    return likeliest_first(made)
+
+
+def each_by_itself(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase) -> list[Contender]:
+    """Hold what comes near the best against its own noise too: another's may flatter it, or wrong it.
+
+    Parameters
+    ----------
+    fitter
+        Of the dataset.
+    contenders
+        Without the nominal model.
+    tell
+        Is told the phase, how much of it is done, and of how much.
+    """
+    made = likeliest_first(contenders)
+    count = 0
+    for k, contender in enumerate(made):
+        assert contender.fit is not None
+        if contender.settled or contender.total > made[0].total + _NEAR:
+            continue
+        tell("each against its own noise", count, _MOST_NEAR)
+        fitter.take_likeliest_noise(contender.effects)
+        fit = fitter.fit(contender.fit.hypothesis, contender.point, evaluations=IDLE_POINTS)
+        made[k] = replace(of_fit(fitter, fit), settled=True)
+        count += 1
+        if count == _MOST_NEAR:
+            break
+    return likeliest_first(made)
+
+
+def against_the_best(fitter: Fitter, nominal: Contender, contenders: Sequence[Contender]) -> list[Contender]:
+    """Hold all that come near the best against its noise too; of those that say the same, keep what is likelier.
+
+    Near a threshold the noise around two hypotheses that say the same can differ by much. What is better than another
+    has to be so against one noise.
+
+    Parameters
+    ----------
+    fitter
+        Of the dataset.
+    nominal
+        The nominal model.
+    contenders
+        The others, the best first.
+    """
+    best = contenders[0]
+    made = [best]
+    for contender in (nominal, *contenders[1:]):
+        near = contender.total <= best.total + _NEAR
+        other = beside(fitter, contender, best) if near else contender
+        lent = other.total < contender.total and _says_the_same(fitter, contender, best, other)
+        made.append(other if lent else contender)
+    return made
+
+
+def _says_the_same(fitter: Fitter, contender: Contender, best: Contender, lent: Contender) -> bool:
+    """Return whether a contender is about as near to the best against its own noise as against the best's.
+
+    What the best changes moves more easily where it is at work: its noise may hide the very gap that it closes.
+    """
+    own = beside(fitter, contender, contender)
+    return own.total - beside(fitter, best, contender).total < lent.total - best.total + CLEAR
+
+
+def beside(fitter: Fitter, contender: Contender, around: Contender) -> Contender:
+    """Hold a contender against the noise around another.
+
+    Parameters
+    ----------
+    fitter
+        Of the dataset.
+    contender, around
+        Either may be the nominal model.
+    """
+    fitter.take_likeliest_noise(contender.effects, around.effects)
+    if contender.fit is None:
+        return of_nominal(fitter)
+    return replace(of_fit(fitter, fitter.again(contender.fit)), settled=contender.settled)
