@@ -15,7 +15,8 @@ from tumblers.diagnosis.fit import Fitter
 from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.loss import robust_cost
 from tumblers.diagnosis.own_noise import against_the_best, beside
-from tumblers.diagnosis.search import Search, _firsts
+from tumblers.diagnosis.pairs import firsts
+from tumblers.diagnosis.search import Search
 from tumblers.diagnosis.simulator import STEPS_S, Job, Simulator
 from tumblers.diagnosis.thresholds import CLEAR
 from tumblers.effects.base import Effect
@@ -76,7 +77,7 @@ def test_the_best_is_always_a_first_and_what_is_far_behind_is_not(log_determinan
     nominal = of_nominal(Fitter(Comparison(dataset, Simulator(dataset))))
     costs = (400.0, 580.0, 620.0)
     contenders = [replace(nominal, cost=cost, log_determinant=log_determinant) for cost in costs]
-    assert [contender.cost for contender in _firsts(contenders)] == [400.0, 580.0]
+    assert [contender.cost for contender in firsts(contenders)] == [400.0, 580.0]
 
 
 def test_an_effect_that_makes_motion_fast_is_simulated_in_a_step_that_resolves_it() -> None:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +30,7 @@ from .own_noise import (
     each_by_itself,
     settled,
 )
+from .pairs import Pairs, firsts, single_of
 from .predictive import is_right, mean_square
 from .thresholds import CLEAR, beyond_thresholds
 
@@ -42,17 +42,15 @@ Floats = NDArray[np.float64]
 # another look, for the prior asks for as much.
 _WORTH = 9.0
 # Trial points of a fit: of an effect that leads after the scan (so many do), and of another (where nothing is better
-# than neutral only the derivatives are taken); and of a pair.
-_LEADING, _LEADING_POINTS, _POINTS, _PAIR_POINTS = 6, 6, 4, 4
+# than neutral only the derivatives are taken).
+_LEADING, _LEADING_POINTS, _POINTS = 6, 6, 4
 # A gap is left where the mean square stays above this against the likeliest noise.
 _WANTING = 1.1
 # Hypotheses that are fitted again from the beginnings of the trials; and of those whose points over the range follow
 # the beginnings better than their fit does.
 _REFINED, _PROMISING = 2, 4
-# Effects to which a second is added, the farther ones only where the best leaves a gap, and they leave no more than so
-# much of its objective beyond it; seconds that are fitted with each; singles that are joined two and two, and joints
-# that are fitted.
-_FIRSTS, _NEAR_BEST, _SECONDS, _JOINED, _JOINTS = 2, 0.5, 3, 4, 2
+# Effects to which a second is added, the farther ones only where the best leaves a gap.
+_FIRSTS = 2
 # How many of the points around a fit are fitted on in so many trial points, and how often all this.
 _SHAKEN_FITS, _SHAKEN_POINTS, _SHAKES = 2, 3, 2
 # Pairs whose beginnings are searched, and singles for which one of the best pair is exchanged.
@@ -134,7 +132,7 @@ class Search:
             return single
         assert single.fit is not None
         (kind,) = single.fit.hypothesis.kinds
-        alone = self._alone(pair, kind, POLISH_POINTS)
+        alone = single_of(self.fitter, self.possible, pair, kind, POLISH_POINTS)
         return likeliest([single, replace(alone, settled=True)])
 
     def _singles(self, nominal: Contender) -> list[Contender]:
@@ -207,88 +205,30 @@ class Search:
 
     def _pairs(self, singles: Sequence[Contender], strong: bool) -> list[Contender]:
         """Add a second effect to the best; none where none shows."""
-        found: dict[frozenset[str], Contender] = {}
+        pairs = Pairs(self.fitter, self.possible, self.hints)
         # A second effect shows beside the best one; beside the next best only where the best leaves a gap.
         wanting = strong and self._is_wanting(singles[0])
-        firsts = _firsts(singles[: _FIRSTS if wanting else 1])
-        for n, first in enumerate(firsts):
-            self.tell("fitting pairs", n, len(firsts))
-            self._added(first, singles, found)
+        near = firsts(singles[: _FIRSTS if wanting else 1])
+        for n, first in enumerate(near):
+            self.tell("fitting pairs", n, len(near))
+            pairs.add(first, singles)
         if wanting:
-            self._joined(singles, found)
-        pairs = likeliest_first(found.values())
-        if not pairs or pairs[0].total > singles[0].total - self.worth:
-            return pairs
-        pairs = settled(self.fitter, pairs, self.tell)
-        found = {frozenset(pair.names): pair for pair in pairs}
+            pairs.join(singles)
+        found = pairs.likeliest_first()
+        if not found or found[0].total > singles[0].total - self.worth:
+            return found
+        found = settled(self.fitter, found, self.tell)
+        pairs = Pairs(self.fitter, self.possible, self.hints, found)
         # The best second may be the answer to a first that is wrong: with it held, is there a better first?
-        best = pairs[0]
+        best = found[0]
         assert best.fit is not None
         for n, kind in enumerate(best.fit.hypothesis.kinds):
             self.tell("exchanging one of the pair", n, 2)
-            if kind.name not in firsts[0].names:
-                self._added(self._alone(best, kind, IDLE_POINTS), singles[:_EXCHANGED], found)
-        pairs = likeliest_first(found.values())
+            if kind.name not in near[0].names:
+                single = single_of(self.fitter, self.possible, best, kind, IDLE_POINTS)
+                pairs.add(single, singles[:_EXCHANGED])
+        found = pairs.likeliest_first()
         # However little the best leaves: against a sharper noise another may leave as little.
         if strong:
-            pairs = self._refined(pairs, _PAIRS_REFINED)
-        return settled(self.fitter, pairs, self.tell)
-
-    def _alone(self, pair: Contender, kind: type[Effect], points: int) -> Contender:
-        """Return one effect of a pair, as it is within it, as a contender of its own."""
-        assert pair.fit is not None
-        hypothesis = next(h for h in self.possible if h.kinds == (kind,))
-        mine = np.array([name == kind.name for name, _ in pair.fit.hypothesis.keys])
-        return against_itself(self.fitter, self.fitter.fit(hypothesis, pair.point[mine], evaluations=points))
-
-    def _added(self, first: Contender, singles: Sequence[Contender], found: dict[frozenset[str], Contender]) -> None:
-        """Fit the seconds that promise most beside a first, against its noise."""
-        assert first.fit is not None
-        self.fitter.take_likeliest_noise(first.effects)
-        # What each is by itself is one more start.
-        alone = {single.names: single.point for single in singles}
-        others = [
-            replace(h, starts=np.vstack([h.starts, alone[h.names], *self.hints.get(h.names, ())]))
-            for h in self.possible
-            if h.names != first.names and h.names in alone
-        ]
-        joined = [first.fit.hypothesis + other for other in others]
-        bases = [np.concatenate([first.point, np.zeros(len(other.neutral))]) for other in others]
-        scans = self.fitter.scan(joined, bases, first.residual, first.fit.jacobian)
-        costs = [points[0][0] for points in scans]
-        for k in np.argsort(costs, kind="stable")[:_SECONDS]:
-            if costs[k] < first.cost - CLEAR:
-                self._keep(joined[k], scans[k][0][1], found)
-
-    def _joined(self, singles: Sequence[Contender], found: dict[frozenset[str], Contender]) -> None:
-        """Fit the best of the best singles two and two, from each one's own best and from halves."""
-        self.fitter.take_likeliest_noise(singles[0].effects)
-        tried: list[tuple[float, int, Hypothesis, Floats]] = []
-        for first, second in combinations(singles[:_JOINED], 2):
-            assert first.fit is not None
-            assert second.fit is not None
-            both = first.fit.hypothesis + second.fit.hypothesis
-            points = [
-                np.concatenate([a * first.point, b * second.point]) for a, b in ((1.0, 1.0), (1.0, 0.5), (0.5, 1.0))
-            ]
-            for point, residual in zip(points, self.fitter.residuals(both, points), strict=True):
-                tried.append((self.fitter.cost(residual, point), len(tried), both, point))
-        tried.sort(key=lambda entry: entry[:2])
-        fitted: set[tuple[str, ...]] = set()
-        for _, _, both, point in tried:
-            if both.names not in fitted and len(fitted) < _JOINTS:
-                fitted.add(both.names)
-                self._keep(both, point, found)
-
-    def _keep(self, hypothesis: Hypothesis, start: Floats, found: dict[frozenset[str], Contender]) -> None:
-        contender = of_fit(self.fitter, self.fitter.fit(hypothesis, start, evaluations=_PAIR_POINTS))
-        names = frozenset(hypothesis.names)
-        if names not in found or contender.total < found[names].total:
-            found[names] = contender
-
-
-def _firsts(singles: Sequence[Contender]) -> list[Contender]:
-    """Return those of the best, best first, that are near enough to be a first of a pair."""
-    # A total may be negative, for a determinant may be small; what the best leaves never is.
-    near = singles[0].total + _NEAR_BEST * singles[0].cost
-    return [contender for contender in singles if contender.total <= near]
+            found = self._refined(found, _PAIRS_REFINED)
+        return settled(self.fitter, found, self.tell)
