@@ -9,11 +9,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tumblers.diagnosis.beginnings import from_beginnings, promise
-from tumblers.diagnosis.comparison import FAR, Comparison
+from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.contender import of_fit, of_nominal
 from tumblers.diagnosis.fit import Fitter
 from tumblers.diagnosis.hypothesis import Hypothesis
-from tumblers.diagnosis.loss import robust_cost
+from tumblers.diagnosis.loss import FAR, robust_cost
 from tumblers.diagnosis.own_noise import against_the_best, beside
 from tumblers.diagnosis.pairs import firsts
 from tumblers.diagnosis.search import Search

@@ -25,9 +25,9 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from ..effects.base import Effect
-from .comparison import FAR, Comparison, Residual
+from .comparison import Comparison, Residual
 from .hypothesis import PRIOR_SIGMA, Hypothesis
-from .loss import HUBER, robust_cost
+from .loss import FAR, HUBER, robust_cost
 from .pose import Path
 from .simulator import Job
 

@@ -8,12 +8,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["HUBER", "huber", "robust_cost"]
+__all__ = ["FAR", "HUBER", "huber", "robust_cost", "weight_of"]
 
 Floats = NDArray[np.float64]
 
 # Where the loss turns from square to linear, in sigmas.
 HUBER = 4.0
+# A trial's track whose mean square is beyond this counts by its logarithm.
+FAR = 3.0
 
 
 def huber(values: Floats) -> Floats:
@@ -37,3 +39,16 @@ def robust_cost(values: Floats) -> float:
         Whitened differences, of any shape.
     """
     return float(np.sum(huber(values)))
+
+
+def weight_of(track: Floats, count: int) -> float:
+    """Return how much a trial's track counts: less where the model is far from it (`Fitter`'s objective).
+
+    Parameters
+    ----------
+    track
+        Its whitened differences, so far as they are compared, shape (n,).
+    count
+        How many the whole track has.
+    """
+    return 1.0 / (1.0 + robust_cost(track) / (FAR * count)) if count else 1.0

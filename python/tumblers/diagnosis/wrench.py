@@ -198,7 +198,7 @@ def _nuisances(comparison: Comparison, residual: Residual, trial: int, path: Pat
     found = comparison.readers[trial].linearised(path, residual.local[trial], residual.camera)
     parts = [floor.whiten[name] @ found[name][kept, :5] for name, kept in floor.valid.items()]
     rows = np.concatenate([*parts, np.zeros((len(floor.outcome_scale), 5))])
-    sigmas = np.concatenate([comparison.local_sigmas[trial], comparison.shared_sigmas])
+    sigmas = np.concatenate([comparison.nuisances.local_sigmas[trial], comparison.nuisances.shared_sigmas])
     return np.asarray(np.hstack([rows, -floor.tolerance]) * sigmas, dtype=np.float64)
 
 
@@ -243,8 +243,8 @@ def _present(comparison: Comparison, residual: Residual, trial: int) -> Floats:
 
     What they took of the gap under the nominal model costs them, so that a wrench can take it back.
     """
-    shared = np.concatenate([residual.camera, residual.tolerance]) / comparison.shared_sigmas
-    return np.concatenate([residual.local[trial] / comparison.local_sigmas[trial], shared])
+    shared = np.concatenate([residual.camera, residual.tolerance]) / comparison.nuisances.shared_sigmas
+    return np.concatenate([residual.local[trial] / comparison.nuisances.local_sigmas[trial], shared])
 
 
 def _information(state: _State, slopes: Floats, nuisances: Floats, present: Floats) -> tuple[Floats, Floats]:
