@@ -58,6 +58,8 @@ def from_beginnings(fitter: Fitter, contender: Contender, possible: Sequence[Hyp
 def promise(fitter: Fitter, contender: Contender, seed: int) -> float:
     """Return how much better than a contender the best point over its range follows the beginnings of the trials.
 
+    By the objective, against the noise of the moment; 0 where there are no tracks.
+
     Parameters
     ----------
     fitter

@@ -38,7 +38,7 @@ class Residual:
     trials
         By trial, the whitened differences, shape (n_i,): channel after channel, then the outcomes.
     prior
-        Scaled nuisances of the trials and of the camera: what their being off costs.
+        Scaled nuisances of the trials, of the camera and of the nominal numbers: what their being off costs.
     local
         Clock (s) and origin (m) by trial, shape (trials, 3).
     camera
@@ -192,7 +192,7 @@ class Comparison:
         paths
             The model's, one for each trial.
         train
-            Trials from which the camera's heading and scale are fitted; all if None.
+            Trials from which what all share is fitted, the camera's and the nominal numbers'; all if None.
         fit_nuisances
             False to take the sensor as perfect.
         share

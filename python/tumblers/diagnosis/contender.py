@@ -30,11 +30,12 @@ class Contender:
     residual
         How wrong it is over all trials.
     cost
-        The objective, against its own noise.
+        The objective against one noise: that around itself, that of the moment at which it was fitted, or that around
+        the best (`against_the_best`).
     log_determinant
         ln det of that noise's covariance over that of the nominal model's.
     settled
-        Whether that is the noise around itself, not around another.
+        Whether it was fitted against the noise around itself, not around another.
     log_evidence
         ln Z, the prior included.
     probability

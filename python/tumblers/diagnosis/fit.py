@@ -7,10 +7,11 @@ The objective is
 ```
 
 over the whitened differences r of the n_t numbers of each track that is fitted, the sensor's nuisances at their optimum
-for every point. The logarithm is what is left of a trial's likelihood when its noise may be any multiple of the floor:
-past a threshold, or where motion is chaotic, a trial can be far from the best of models, and must not decide alone.
-Least squares see it as a weight of the trial, `1/(1 + mean square/κ)`, taken at the start and once more on the way. The
-derivatives are finite differences, all of them one native batch.
+for every point; where a beginning alone is compared, n_t is still of the whole track. The logarithm is what is left of
+a trial's likelihood when its noise may be any multiple of the floor: past a threshold, or where motion is chaotic, a
+trial can be far from the best of models, and must not decide alone. Least squares see it as a weight of the trial,
+`1/(1 + mean square/κ)`, taken at the start and once more on the way. The derivatives are finite differences, all of
+them one native batch.
 """
 
 from __future__ import annotations

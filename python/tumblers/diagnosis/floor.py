@@ -111,7 +111,7 @@ class Floor:
         return self.tracked + len(self.outcome_scale)
 
     def beginning(self, frames: int, counts: NDArray[np.bool_]) -> Floor:
-        """Return the noise of the first frames, without outcomes.
+        """Return the noise of the first frames, without outcomes; what sums a trial up stays that of all of it.
 
         Parameters
         ----------

@@ -87,7 +87,7 @@ class Search:
         return [hypothesis.names[0] for hypothesis in self.possible]
 
     def contenders(self) -> list[Contender]:
-        """Return the nominal model and what was fitted, those that count against their own noise."""
+        """Return the nominal model and what was fitted, those that count against their own noise or the best's."""
         self.fitter.take_likeliest_noise(())
         nominal = of_nominal(self.fitter)
         singles = self._singles(nominal)

@@ -23,7 +23,7 @@ class Stretch:
     Attributes
     ----------
     reader, floor
-        Of its frames alone; outcomes are those of the whole.
+        Of its frames alone. A beginning has no outcomes: they are of the whole.
     counts
         Which of the whole trial's numbers are compared, shape (n,).
     """
