@@ -35,12 +35,12 @@ from .predictive import is_right
 from .search import Search
 from .tolerated import is_tolerated
 
-__all__ = ["LAPSE", "SECOND", "Attribution", "attribute"]
+__all__ = ["LAPSE", "PRIOR", "SECOND", "Attribution", "attribute"]
 
 Floats = NDArray[np.float64]
 
-# Prior odds: that there is no gap, one effect, two.
-_PRIOR = {0: 0.4, 1: 0.45, 2: 0.15}
+# Prior probabilities: that there is no gap, one effect, two.
+PRIOR = {0: 0.4, 1: 0.45, 2: 0.15}
 # ln of the odds that a second effect must win beside: one effect in a form that is not the catalogue's leaves what a
 # second could explain as well. Chosen from twelve datasets with a known truth in which two effects were named: where
 # one was at work the second had won 2.4 to 7.4 over the best single one, where two were 20 or more.
@@ -136,9 +136,9 @@ def _ranked(
     dispersion = alike * max(1.0, min(contender.cost for contender in contenders) / comparison.count)
     listed = max(len(effects), 1)
     prior = {
-        0: log(_PRIOR[0]),
-        1: log(_PRIOR[1] / listed),
-        2: log(_PRIOR[2] / max(listed * (listed - 1) // 2, 1)) - SECOND,
+        0: log(PRIOR[0]),
+        1: log(PRIOR[1] / listed),
+        2: log(PRIOR[2] / max(listed * (listed - 1) // 2, 1)) - SECOND,
     }
     place = {name: k for k, name in enumerate(effects)}
     scored = []
