@@ -11,9 +11,9 @@ from typing import Any
 
 from ..errors import InputError, show, unreadable
 from .answer import Answer, seal
-from .make import ANSWERS_FORMAT, SEAL
+from .make import ANSWERS_FORMAT, SEAL, SEAL_FORMAT
 from .repeat import REPEAT_FORMAT
-from .run import DIAGNOSIS, RECORD, REPEAT
+from .run import DIAGNOSIS, RECORD, RECORD_FORMAT, REPEAT
 
 __all__ = ["Record", "read_records"]
 
@@ -107,7 +107,7 @@ def read_records(directory: str | PathLike[str], answers: str | PathLike[str]) -
 
 
 def _record(folder: Path, salt: object, answer: object, answers: Path) -> Record:
-    sealed = _json(folder / SEAL, "tumblers-seal/1")
+    sealed = _json(folder / SEAL, SEAL_FORMAT)
     if not isinstance(salt, str) or not isinstance(answer, dict) or not _is_sealed(sealed, salt, answer):
         raise InputError(folder.name, "an answer that is not the sealed one", f"that of {folder / SEAL}", answers)
     try:
@@ -115,7 +115,7 @@ def _record(folder: Path, salt: object, answer: object, answers: Path) -> Record
     except (AttributeError, KeyError, OverflowError, TypeError, ValueError):
         raise InputError(folder.name, show(answer), "an answer of this version", answers) from None
     diagnosis = _json(folder / DIAGNOSIS, _DIAGNOSIS_FORMAT) if (folder / DIAGNOSIS).exists() else None
-    run = _json(folder / RECORD, "tumblers-blind-run/1") if (folder / RECORD).exists() else {}
+    run = _json(folder / RECORD, RECORD_FORMAT) if (folder / RECORD).exists() else {}
     again = _json(folder / REPEAT, REPEAT_FORMAT) if (folder / REPEAT).exists() else {}
     return Record(
         dataset=folder.name,
