@@ -105,6 +105,14 @@ def test_what_is_done_stays_done(diagnose: list[object], tmp_path: Path) -> None
     assert run(tmp_path, jobs=1) == (0, 1, 0)
 
 
+def test_what_lies_beside_the_datasets_is_none(diagnose: list[object], tmp_path: Path) -> None:
+    assert diagnose
+    _diagnose(write(tmp_path / "dataset-000"), THREADS)
+    (tmp_path / "dataset-000.zip").touch()
+    (tmp_path / "dataset-1 (copy)").mkdir()
+    assert run(tmp_path, jobs=1) == (0, 1, 0)
+
+
 def test_a_folder_without_datasets_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no datasets"):
         run(tmp_path)

@@ -68,7 +68,9 @@ def run(
     thread_count("threads", threads)
     if jobs is not None:
         thread_count("jobs", jobs)
-    folders = {int(path.name.removeprefix("dataset-")): path for path in sorted(Path(directory).glob("dataset-[0-9]*"))}
+    named = [(path.name.removeprefix("dataset-"), path) for path in sorted(Path(directory).glob("dataset-*"))]
+    # A copy, or an archive, beside them is none.
+    folders = {int(number): path for number, path in named if number.isdecimal()}
     if not folders:
         raise InputError(None, "no datasets", "a folder of `tumblers blind make`", directory)
     for number in only or ():
