@@ -161,7 +161,7 @@ class Fitter:
     def trial_cost(self, residual: Residual, trial: int) -> float:
         """Return what one trial adds to the objective."""
         values = residual.trials[trial]
-        track = len(values) - len(self.comparison.floors[trial].outcome_scale)
+        track = self.comparison.floors[trial].tracked
         far = FAR * max(track, 1)
         return far * float(np.log1p(robust_cost(values[:track]) / far)) + robust_cost(values[track:])
 
@@ -219,8 +219,7 @@ class Fitter:
         rows = []
         for i in chosen:
             row = np.ones(len(residual.trials[i]))
-            track = len(row) - len(self.comparison.floors[i].outcome_scale)
-            row[:track] = np.sqrt(self.comparison.weight(i, residual.trials[i]))
+            row[: self.comparison.floors[i].tracked] = np.sqrt(self.comparison.weight(i, residual.trials[i]))
             rows.append(row)
         return np.concatenate(rows) if rows else np.empty(0)
 
