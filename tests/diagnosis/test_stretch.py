@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from tumblers.dataset import Dataset, LabTrial, Track
 from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.floor import SHARED
 from tumblers.diagnosis.simulator import Simulator
 from tumblers.diagnosis.stretch import Stretch
 
@@ -39,10 +40,7 @@ def carried_off(trial: LabTrial) -> LabTrial:
 
 def test_a_beginning_is_compared_as_in_the_whole() -> None:
     comparison = compared(seen())
-    local, shared = (
-        np.array([1e-3, 2e-6, -3e-6]),
-        np.zeros(2 + len(comparison.residual(comparison.nominal_paths).tolerance)),
-    )
+    local, shared = np.array([1e-3, 2e-6, -3e-6]), np.zeros(2 + SHARED)
     shared[:3] = 1e-3, 1e-3, 0.5
     for reader, floor, path in zip(comparison.readers, comparison.floors, comparison.nominal_paths, strict=True):
         assert path is not None
@@ -72,3 +70,17 @@ def test_before_the_first_frame_there_is_nothing_to_compare() -> None:
     residual = comparison.residual(comparison.nominal_paths, share=1e-6)
     assert not np.any(residual.over((0, 1)))
     assert not np.any(residual.prior)
+
+
+def test_the_beginning_of_a_trial_without_frames_leaves_the_others_as_they_are() -> None:
+    alone = seen()
+    lost = replace(without(alone, "f02", slice(None)).trials[0], id="lost")
+    noted = replace(plan(PLANS[2:3], duration_s=DURATION_S).trials[0], id="noted")
+    beside = replace(alone, trials=(lost, *alone.trials, noted))
+    one, other = (
+        comparison.residual(comparison.nominal_paths, share=SHARE) for comparison in map(compared, (alone, beside))
+    )
+    assert len(other.trials[0]) == 0
+    # An outcome is of the whole trial: of a beginning it says nothing.
+    assert_array_equal(other.trials[3], [0.0])
+    assert_allclose(other.over((1, 2)), one.over((0, 1)), rtol=1e-9, atol=1e-12)
