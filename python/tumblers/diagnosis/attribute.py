@@ -7,12 +7,12 @@ ln Z = -(cost + ln det Σ)/(2c) - ½ ln det(1 + σ_u² JᵀJ/c) + ln prior,
 c = max(1, cost of the best / number of measurements) n_c
 ```
 
-with Σ the noise around each hypothesis, or around the best where it says the same (`own_noise`), and the prior u ~ N(0,
-σ_u² 1) on parameters in units of their range. Neighbouring frames share what the model itself gets wrong, so that n_c
-numbers count as one (`Comparison.alike`); and where even the best hypothesis leaves more than noise, everything that is
-concluded is widened by that (a quasi-likelihood; McCullagh and Nelder 1989, 9.2). Outcomes are few and count each for
-one. A second effect has to add more than the form of the first may be wrong by, and a small share of the probability
-belongs to all hypotheses alike.
+with Σ the noise around each hypothesis, or around the best where it says the same (`own_noise`), and the prior
+u ~ N(0, σ_u² 1) on parameters in units of their range. Neighbouring frames share what the model itself gets wrong, so
+that n_c numbers count as one (`Comparison.alike`); and where even the best hypothesis leaves more than noise,
+everything that is concluded is widened by that (a quasi-likelihood; McCullagh and Nelder 1989, 9.2). Outcomes are few
+and count each for one. A second effect has to add more than the form of the first may be wrong by, and a small share of
+the probability belongs to all hypotheses alike.
 """
 
 from __future__ import annotations
