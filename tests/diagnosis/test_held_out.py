@@ -8,10 +8,13 @@ import numpy as np
 import pytest
 
 from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.contender import Contender
+from tumblers.diagnosis.contender import Contender, of_fit
 from tumblers.diagnosis.fit import Fitter
-from tumblers.diagnosis.held_out import HeldOut, folds, is_foretold, shrink
+from tumblers.diagnosis.held_out import HeldOut, folds, held_out, is_foretold, shrink
+from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.simulator import Simulator
+from tumblers.effects.friction_coefficient import FrictionCoefficient
+from tumblers.field import StaticField
 
 from .lab import UPWARDS, measure, plan, without
 
@@ -79,3 +82,22 @@ def test_a_trial_without_numbers_is_not_left_out() -> None:
 @pytest.mark.parametrize("size", [0.1, 3.0])
 def test_where_no_trial_can_be_left_out_nothing_is_foretold(size: float) -> None:
     assert not foretold([3.0], [size])
+
+
+def test_what_the_other_trials_do_not_know_is_neutral_where_one_is_left_out() -> None:
+    # A body on a slope shows its friction; one that lies on the level shows none.
+    off = StaticField(strength_T=0.0, direction=(0.0, 1.0, 0.0))
+    dataset = measure(
+        plan([("lying", off, 50.0), ("still", off, 0.0)], duration_s=0.3), (FrictionCoefficient(factor=0.5),)
+    )
+    fitter = Fitter(Comparison(dataset, Simulator(dataset, 1)))
+    hypothesis = Hypothesis.of(FrictionCoefficient, [fitter.comparison.simulator.nominal(i) for i in fitter.trials])
+    there = (np.array([0.5]) - hypothesis.neutral) / hypothesis.scale
+    fitted = of_fit(fitter, fitter.fit(hypothesis, there))
+    without_lying, without_still = held_out(fitter, fitted).points
+    assert without_lying is not None
+    assert without_still is not None
+    assert abs(fitted.point[0]) > 0.1
+    # A fit ends near the least of its objective, which is neutral there.
+    assert abs(without_lying[0]) < 0.02 * abs(fitted.point[0])
+    assert without_still[0] == pytest.approx(fitted.point[0], rel=0.01)

@@ -15,10 +15,12 @@ from numpy.typing import NDArray
 from ..field import RotatingField, StaticField
 from .comparison import Residual
 from .contender import Contender
-from .fit import Fitter
+from .fit import Fit, Fitter
+from .hypothesis import PRIOR_SIGMA
 from .loss import robust_cost
 from .result import Gap, Interval
 from .simulator import Job
+from .thresholds import CLEAR
 
 __all__ = ["NOISE_FLOOR", "HeldOut", "folds", "held_out", "is_foretold", "shrink"]
 
@@ -87,7 +89,7 @@ def held_out(fitter: Fitter, contender: Contender) -> HeldOut:
     fitter
         Of the dataset.
     contender
-        The hypothesis, fitted to all trials: where the fits start.
+        The hypothesis, fitted to all trials.
     """
     residuals: dict[int, Residual] = {}
     points: dict[int, Floats | None] = {}
@@ -96,11 +98,7 @@ def held_out(fitter: Fitter, contender: Contender) -> HeldOut:
         point = None
         if contender.fit is not None:
             hypothesis = contender.fit.hypothesis
-            point = (
-                fitter.fit(hypothesis, contender.fit.point, train, _EVALUATIONS).point
-                if left_out
-                else contender.fit.point
-            )
+            point = _refitted(fitter, contender.fit, train) if left_out else contender.fit.point
             paths = fitter.comparison.simulator.run([Job(i, hypothesis.effects(point)) for i in fitter.trials])
         else:
             paths = list(fitter.comparison.nominal_paths)
@@ -113,6 +111,30 @@ def held_out(fitter: Fitter, contender: Contender) -> HeldOut:
         tuple(residuals.get(i, residuals[anywhere]) for i in fitter.trials),
         tuple(points.get(i, points[anywhere]) for i in fitter.trials),
     )
+
+
+def _refitted(fitter: Fitter, fit: Fit, train: tuple[int, ...]) -> Floats:
+    """Return the parameters u that some trials ask for, shape (p,): a fit that starts from what they know of them.
+
+    Where they leave a parameter free, a fit from the point that all trials chose would stay there. It starts from
+
+    ```text
+    (JᵀJ + 1/σ_u²)⁻¹ JᵀJ u
+    ```
+
+    with the derivatives J of their differences alone: what they hold stays, what they do not is neutral. Only where the
+    point of all trials follows these much better does the fit start there: a search of these would have found it, too.
+    """
+    comparison = fitter.comparison
+    ends = np.cumsum([0, *comparison.sizes])
+    known = fit.jacobian[np.concatenate([np.arange(ends[i], ends[i + 1]) for i in train])]
+    information = known.T @ known
+    start = np.linalg.solve(information + np.eye(len(fit.point)) / PRIOR_SIGMA**2, information @ fit.point)
+    refitted = fitter.fit(fit.hypothesis, start, train, _EVALUATIONS)
+    here = fitter.residuals(fit.hypothesis, [fit.point], train)[0]
+    if fitter.cost(here, fit.point, train) < refitted.cost - CLEAR:
+        refitted = fitter.fit(fit.hypothesis, fit.point, train, _EVALUATIONS)
+    return refitted.point
 
 
 def is_foretold(fitter: Fitter, nominal: HeldOut, chosen: HeldOut, gap: Gap, best: Contender) -> bool:
