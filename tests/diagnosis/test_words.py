@@ -93,6 +93,9 @@ def test_cautions_name_what_weakens_a_diagnosis() -> None:
     said = " ".join(text for label, text in points(made(floors=tuple(floors))) if label == "caution")
     assert "half of the frames are lost in f01" in said
     assert "above the noise in f01" in said
+    floors = [replace(floor, frames=0, tolerance_sigmas=6.0) for floor in made().floors[:1]]
+    said = " ".join(text for label, text in points(made(floors=tuple(floors))) if label == "caution")
+    assert "move the outcome of f01 by more than 5 times its noise" in said
     at_end = EffectEstimate("draft_angle", 0.9, {"draft_deg": Interval(8.0, 7.5, 8.0)}, ())
     assert "end of its plausible range" in dict(points(made(effects=(at_end,))))["caution"]
 

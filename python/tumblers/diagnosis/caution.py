@@ -16,6 +16,8 @@ _UNSURE = 0.8
 # Share of the range within which an estimate counts as being at its end.
 _AT_END = 0.01
 _MANY_LOST = 0.5
+# What the tolerances leave open of an outcome, in its noise: beyond so much it hardly counts.
+_MUCH_OPEN = 5.0
 
 
 def cautions(diagnosis: Diagnosis) -> tuple[str, ...]:
@@ -72,4 +74,10 @@ def _of_trials(diagnosis: Diagnosis) -> list[str]:
     rough = [f.trial for f in diagnosis.floors if f.numerical_sigmas > 1.0]
     if rough:
         said.append(f"the simulation's own error is above the noise in {', '.join(rough)}, and counted as noise there.")
+    open_ = [f.trial for f in diagnosis.floors if f.frames == 0 and f.tolerance_sigmas > _MUCH_OPEN]
+    if open_:
+        said.append(
+            f"the nominal numbers' tolerances alone move the outcome of {', '.join(open_)} by more than {_MUCH_OPEN:g} "
+            "times its noise: it counts little."
+        )
     return said

@@ -87,7 +87,7 @@ class Floor:
     log_determinant
         ln det of the covariances of all channels and outcomes.
     numerical_sigmas
-        Root mean square change of the path when the step is halved, in noise sigmas.
+        Change when the step is halved, in noise sigmas: root mean square along the path, or an outcome's if more.
     tolerance_sigmas
         The same for the nominal numbers' tolerances together.
     """
@@ -299,9 +299,13 @@ def _rms(reader: Reader, change: Mapping[str, Floats]) -> float:
     return float(np.sqrt(np.mean(np.concatenate(scaled) ** 2))) if scaled else 0.0
 
 
+def _size(reader: Reader, change: Mapping[str, Floats], terms: Mapping[str, float]) -> float:
+    """Return a change in noise sigmas: root mean square along the track, or an outcome's where it is more."""
+    return max([_rms(reader, change), *(abs(term) for term in terms.values())])
+
+
 def _distance(reader: Reader, path: Path | None, other: Path | None) -> float:
-    terms = _outcome_change(reader, path, other).values()
-    return max([_rms(reader, _change(reader, path, other)), *(abs(term) for term in terms)])
+    return _size(reader, _change(reader, path, other), _outcome_change(reader, path, other))
 
 
 def _around(change: Floats) -> Floats:
@@ -352,6 +356,13 @@ def _floor(reader: Reader, moved: Sensitivity, share: float) -> Floor:
         * float(
             sum(np.sum(np.log(np.diag(w))) for w in whiten.values()) + sum(np.log(value) for value in scale.values())
         ),
-        numerical_sigmas=_rms(reader, moved.numerical),
-        tolerance_sigmas=float(np.sqrt(sum(_rms(reader, change) ** 2 for change in moved.tolerances))),
+        numerical_sigmas=_size(reader, moved.numerical, moved.numerical_terms),
+        tolerance_sigmas=float(
+            np.sqrt(
+                sum(
+                    _size(reader, change, terms) ** 2
+                    for change, terms in zip(moved.tolerances, moved.tolerance_terms, strict=True)
+                )
+            )
+        ),
     )
