@@ -103,6 +103,23 @@ def test_steps_are_halved_where_a_hypothesis_asks_for_it() -> None:
     assert_allclose(before.position_m[-1], after.position_m[-1], atol=1e-9)
 
 
+def test_the_leader_is_held_in_a_step_that_is_short_enough_for_it() -> None:
+    # Steps were chosen where the body still lay.
+    dataset = measure(plan(LYING), (FrictionCoefficient(factor=0.5),))
+    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
+    search = Search(fitter, [FrictionCoefficient], quiet, 0)
+    fitter.take_likeliest_noise(())
+    nominal = of_nominal(fitter)
+    (hypothesis,) = search.possible
+    there = (np.array([0.5]) - hypothesis.neutral) / hypothesis.scale
+    leader = of_fit(fitter, fitter.fit(hypothesis, there, evaluations=1))
+    found, still = search._concluded(nominal, [leader])
+    assert fitter.comparison.simulator.step_s[0] < STEPS_S[0]
+    assert found.settled
+    assert found.total == pytest.approx(beside(fitter, found, found).total, rel=1e-9)
+    assert still.total == pytest.approx(beside(fitter, still, still).total, rel=1e-9)
+
+
 def test_a_threshold_in_the_middle_of_a_range_is_found() -> None:
     # Friction just low enough to slide: of no use is a derivative where nothing moves, nor a start far beyond.
     truth = FrictionCoefficient(factor=_sliding_factor())

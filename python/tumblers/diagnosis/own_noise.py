@@ -115,17 +115,25 @@ def each_by_itself(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhas
     made = likeliest_first(contenders)
     count = 0
     for k, contender in enumerate(made):
-        assert contender.fit is not None
         if contender.settled or contender.total > made[0].total + _NEAR:
             continue
         tell("each against its own noise", count, _MOST_NEAR)
-        fitter.take_likeliest_noise(contender.effects)
-        fit = fitter.fit(contender.fit.hypothesis, contender.point, evaluations=IDLE_POINTS)
-        made[k] = replace(of_fit(fitter, fit), settled=True)
+        made[k] = _by_itself(fitter, contender)
         count += 1
         if count == _MOST_NEAR:
             break
-    return likeliest_first(made)
+    made = likeliest_first(made)
+    # Where those all lost by it, the leader may be one that has not been held so.
+    while not made[0].settled:
+        made = likeliest_first([_by_itself(fitter, made[0]), *made[1:]])
+    return made
+
+
+def _by_itself(fitter: Fitter, contender: Contender) -> Contender:
+    assert contender.fit is not None
+    fitter.take_likeliest_noise(contender.effects)
+    fit = fitter.fit(contender.fit.hypothesis, contender.point, evaluations=IDLE_POINTS)
+    return replace(of_fit(fitter, fit), settled=True)
 
 
 def against_the_best(fitter: Fitter, nominal: Contender, contenders: Sequence[Contender]) -> list[Contender]:

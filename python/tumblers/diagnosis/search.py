@@ -103,12 +103,22 @@ class Search:
         if strong and self._is_wanting(singles[0]):
             singles = settled(self.fitter, self._far(singles), self.tell)
         if singles[0].total > nominal.total - self.worth:
-            return against_the_best(self.fitter, nominal, each_by_itself(self.fitter, singles, self.tell))
+            return self._concluded(nominal, singles)
         pairs = self._pairs(singles, strong)
         if pairs:
             pairs = likeliest_first([self._shaken(pairs[0]), *pairs[1:]])
             singles = [self._nested(pairs[0], singles[0]), *singles[1:]]
-        return against_the_best(self.fitter, nominal, each_by_itself(self.fitter, [*singles, *pairs], self.tell))
+        return self._concluded(nominal, likeliest_first([*singles, *pairs]))
+
+    def _concluded(self, nominal: Contender, contenders: Sequence[Contender]) -> list[Contender]:
+        """Return the nominal model and all others, in steps that are short enough for the leader."""
+        made = list(contenders)
+        # What moves so in one step and not in half of it is no motion of the model, and speaks for nothing.
+        while self.comparison.halve_steps_for(made[0].effects):
+            self.fitter.take_likeliest_noise(())
+            nominal = of_nominal(self.fitter)
+            made = settled(self.fitter, again(self.fitter, made), self.tell)
+        return against_the_best(self.fitter, nominal, each_by_itself(self.fitter, made, self.tell))
 
     def _far(self, singles: Sequence[Contender]) -> list[Contender]:
         """Search far away for the best, and where they leave a gap for those that no local fit can be trusted with."""
