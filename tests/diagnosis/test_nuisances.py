@@ -40,6 +40,16 @@ def test_a_sensor_within_its_tolerance_is_no_effect(seed: int, sign: float) -> N
     assert diagnosis.gap.after_nuisance_only < 1.1
 
 
+@pytest.mark.parametrize(("stated_s", "longer_s"), [(None, 1.0 / 60.0), (0.0, 1.0 / 60.0), (0.1, 0.1)])
+def test_a_run_is_long_enough_for_a_clock_that_is_off(stated_s: float | None, longer_s: float) -> None:
+    # Or the model would stand still in the last frames.
+    dataset = measure(plan())
+    dataset = replace(dataset, sensor=replace(dataset.sensor, time_offset_s=stated_s))
+    run, trial = Simulator(dataset, 1).nominal(0).run, dataset.trials[0]
+    assert run.duration_s > trial.duration_s + 0.99 * longer_s
+    assert run.duration_s < trial.duration_s + longer_s + 0.01
+
+
 def test_a_camera_that_is_off_by_more_is_the_camera() -> None:
     dataset = measure(plan(), heading_deg=5.0, scale=1.02, seed=1)
     diagnosis = diagnose(dataset, effects=CONSIDERED, jobs=2)

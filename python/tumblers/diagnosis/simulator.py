@@ -86,7 +86,7 @@ class Simulator:
         self._known: OrderedDict[Scenario, tuple[_core._Rollout, int]] = OrderedDict()
 
     def nominal(self, trial: int, divisor: int = 1) -> Scenario:
-        """Return the scenario of what the lab believes, long enough for a clock that is half a frame off.
+        """Return the scenario of what the lab believes, long enough for a clock that is off by its tolerance.
 
         Parameters
         ----------
@@ -101,7 +101,8 @@ class Simulator:
             scenario = lab.scenario(self.dataset, key[1], model=self.model)
             if not isinstance(lab.field, TableField):
                 interval = lab.track.frame_interval_s if lab.track is not None and lab.track.time_s.size > 1 else 0.0
-                longer = lab.duration_s + interval + _LONGEST_INTERVAL_S
+                late = max(interval, self.dataset.sensor.time_offset_s or 0.0)
+                longer = lab.duration_s + late + _LONGEST_INTERVAL_S
                 scenario = replace(scenario, run=replace(scenario.run, duration_s=longer))
             self._nominal[key] = scenario
         return self._nominal[key]
