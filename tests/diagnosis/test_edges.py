@@ -63,7 +63,7 @@ def test_one_trial_with_a_gap_is_never_explained() -> None:
     diagnosis = diagnose(measure(plan(PLANS[1:2]), (DRAG,)), effects=CONSIDERED, jobs=2)
     assert diagnosis.verdict == "unexplained"
     assert diagnosis.gap.held_out_trials == ()
-    assert any("single trial" in said for said in diagnosis.assumptions)
+    assert any("one measured trial" in said for said in diagnosis.assumptions)
     assert json.loads(diagnosis.to_json())["gap"]["shrink"]["estimate"] is not None
 
 

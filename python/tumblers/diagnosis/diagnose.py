@@ -297,7 +297,8 @@ def _assumptions(comparison: Comparison, attribution: Attribution) -> tuple[str,
         f"{100.0 * sensor.scale_tolerance:g} %. Larger ones are the effect camera_calibration.",
         f"The nominal numbers may be off by these standard deviations: {nominal}.",
         "What halving the step changes is part of the noise, around each hypothesis that counts for itself, and in "
-        "each trial as much of it as makes the differences likeliest.",
+        "each trial as much of it as makes the differences likeliest. One that comes near the likeliest, and says the "
+        "same against either's noise, may be held against the likeliest's.",
         "Data that were themselves computed in a coarse step"
         + ("" if given else " by the formats' own torque scheme")
         + " are no gap: the change to it is fitted in every hypothesis.",
@@ -326,6 +327,6 @@ def _assumptions(comparison: Comparison, attribution: Attribution) -> tuple[str,
         )
     if not folds(Fitter(comparison)):
         said.append(
-            "With a single trial no trial can be left out: the gap is that of the fit itself, and proves nothing."
+            "With one measured trial none can be left out: the gap is that of the fit itself, and proves nothing."
         )
     return tuple(said)
