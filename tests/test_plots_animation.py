@@ -85,11 +85,15 @@ def test_ctrl_c_waits_for_the_end_of_a_frame(run: xr.Dataset, monkeypatch: pytes
         shown.append(row)
 
     monkeypatch.setattr(_Stage, "show", show)
-    before = signal.getsignal(signal.SIGINT)
-    with pytest.raises(KeyboardInterrupt):
-        animation_bytes(run, "gif", speed=0.25)
-    assert len(shown) == 3
-    assert signal.getsignal(signal.SIGINT) is before
+    # A shell starts what runs in the background with Ctrl-C ignored.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            animation_bytes(run, "gif", speed=0.25)
+        assert len(shown) == 3
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 @pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="no ffmpeg on this machine")

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import time
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 __all__ = ["files_of", "kill_until_done", "small_disk"]
@@ -16,8 +17,13 @@ _MOST = 60
 
 
 def files_of(folder: Path, pattern: str = "*") -> dict[str, bytes]:
-    """Return the files below a folder."""
-    return {str(file.relative_to(folder)): file.read_bytes() for file in folder.rglob(pattern) if file.is_file()}
+    """Return the files below a folder, none of a folder that is not there."""
+    while True:
+        # What runs may tidy up while it is looked at.
+        with suppress(FileNotFoundError):
+            return {
+                str(file.relative_to(folder)): file.read_bytes() for file in folder.rglob(pattern) if file.is_file()
+            }
 
 
 def small_disk(limit: int) -> Callable[[], None]:
