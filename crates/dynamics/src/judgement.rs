@@ -64,7 +64,9 @@ fn flat_face(body: &Body, support: Support, at: &Evaluation, slack: f64) -> Opti
     body.faces_of(one).iter().find(lies).copied()
 }
 
-/// The neighbour that the ECP has moved to, if it has left `support` by more than `slack`.
+/// The neighbour that the body turns onto, if the ECP has left `support` by more than `slack`: the one that the ECP has moved
+/// to, or the farthest from it where adhesion pulls more than the plane pushes, `N < 0`. From the edge that the ECP has passed
+/// a push is too weak to hold the other side down, but a pull is too weak to hold this side down.
 fn left_support(body: &Body, support: Support, at: &Evaluation, slack: f64) -> Option<Support> {
     match support {
         Support::None | Support::Point(_) => None,
@@ -72,24 +74,28 @@ fn left_support(body: &Body, support: Support, at: &Evaluation, slack: f64) -> O
             let points = ContactPoints::new(body, support, &at.rotation);
             let length = (points.y[1] - points.y[0]).norm();
             let share = at.unknowns.impulses[0] / at.normal;
-            if share * length < -slack {
-                Some(Support::Point(h))
+            let (passed, other) = if share * length < -slack {
+                (h, g)
             } else if (share - 1.0) * length > slack {
-                Some(Support::Point(g))
+                (g, h)
             } else {
-                None
-            }
+                return None;
+            };
+            Some(Support::Point(if at.normal < 0.0 { other } else { passed }))
         }
         Support::Face(face) => {
             let point = at.rotation.transpose() * at.arm;
-            let mut worst = (slack, None);
+            let (mut passed, mut farthest) = ((slack, None), (slack, None));
             for (surface, next) in &body.faces()[face as usize].neighbours {
                 let outside = body.surfaces()[*surface as usize].value(&point);
-                if outside > worst.0 {
-                    worst = (outside, Some(*next));
+                if outside > passed.0 {
+                    passed = (outside, Some(*next));
+                }
+                if outside < farthest.0 {
+                    farthest = (outside, Some(*next));
                 }
             }
-            worst.1
+            if at.normal < 0.0 { passed.1.and(farthest.1) } else { passed.1 }
         }
     }
 }
