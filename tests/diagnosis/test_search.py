@@ -160,7 +160,7 @@ def test_a_gap_is_not_hidden_by_the_noise_around_what_closes_it() -> None:
     assert nominal.total == beside(fitter, nominal, nominal).total
 
 
-def test_two_that_say_the_same_are_as_likely_whosever_noise_is_wide() -> None:
+def test_what_says_the_same_as_the_best_is_held_against_its_noise() -> None:
     dataset = measure(plan(LYING, duration_s=0.28), (FrictionCoefficient(factor=_sliding_factor()),))
     fitter = Fitter(Comparison(dataset, Simulator(dataset)))
     search = Search(fitter, [FrictionCoefficient], quiet, 0)

@@ -110,20 +110,30 @@ class Floor:
         """Number of numbers that were measured, outcomes with them."""
         return self.tracked + len(self.outcome_scale)
 
-    def beginning(self, frames: int, counts: NDArray[np.bool_]) -> Floor:
+    def counts(self, frames: int) -> NDArray[np.bool_]:
+        """Return which of all numbers were measured in the first frames, shape (k,); outcomes are of the whole.
+
+        Parameters
+        ----------
+        frames
+            How many.
+        """
+        parts = [(np.arange(len(kept)) < frames)[kept] for kept in self.valid.values()]
+        return np.concatenate([*parts, np.zeros(len(self.outcome_scale), dtype=bool)])
+
+    def beginning(self, frames: int) -> Floor:
         """Return the noise of the first frames, without outcomes; what sums a trial up stays that of all of it.
 
         Parameters
         ----------
         frames
             How many.
-        counts
-            Which of all numbers are theirs, shape (k,).
         """
         valid = {name: kept[:frames] for name, kept in self.valid.items()} if frames else {}
         found = {name: int(kept.sum()) for name, kept in valid.items()}
         whiten = {name: self.whiten[name][:count, :count] for name, count in found.items()}
-        return replace(self, whiten=whiten, valid=valid, outcome_scale={}, tolerance=self.tolerance[counts])
+        tolerance = self.tolerance[self.counts(frames)]
+        return replace(self, whiten=whiten, valid=valid, outcome_scale={}, tolerance=tolerance)
 
 
 def _scaled_moment(scenario: Scenario) -> Scenario:

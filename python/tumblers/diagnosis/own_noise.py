@@ -114,18 +114,16 @@ def each_by_itself(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhas
     """
     made = likeliest_first(contenders)
     count = 0
-    for k, contender in enumerate(made):
-        if contender.settled or contender.total > made[0].total + _NEAR:
-            continue
-        tell("each against its own noise", count, _MOST_NEAR)
-        made[k] = _by_itself(fitter, contender)
-        count += 1
-        if count == _MOST_NEAR:
+    # Where all of the nearest lost by it, the leader may be one that has not been held so.
+    while count < _MOST_NEAR or not made[0].settled:
+        far = made[0].total + _NEAR
+        waiting = [k for k, contender in enumerate(made) if not contender.settled and contender.total <= far]
+        if not waiting:
             break
-    made = likeliest_first(made)
-    # Where those all lost by it, the leader may be one that has not been held so.
-    while not made[0].settled:
-        made = likeliest_first([_by_itself(fitter, made[0]), *made[1:]])
+        tell("each against its own noise", min(count, _MOST_NEAR), _MOST_NEAR)
+        made[waiting[0]] = _by_itself(fitter, made[waiting[0]])
+        made = likeliest_first(made)
+        count += 1
     return made
 
 

@@ -262,7 +262,8 @@ class TrialFloor:
     step_s
         Of the simulation, s.
     numerical_sigmas, tolerance_sigmas
-        Change of the path when the step is halved, and with the nominal numbers' tolerances, in noise sigmas.
+        Change when the step is halved, and with the nominal numbers' tolerances, in noise sigmas: root mean square
+        along the track, or an outcome's if more.
     frames, lost, compared
         Frames of the track, frames lost, and numbers that were compared.
     """

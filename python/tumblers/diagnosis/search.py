@@ -93,9 +93,7 @@ class Search:
         singles = self._singles(nominal)
         if not singles or singles[0].total > nominal.total - self.worth:
             return [nominal, *singles]
-        if self.comparison.halve_steps_for(singles[0].effects):
-            self.fitter.take_likeliest_noise(())
-            nominal, singles = of_nominal(self.fitter), again(self.fitter, singles)
+        nominal, singles = self._resolved(nominal, singles)
         singles = settled(self.fitter, singles, self.tell)
         singles = likeliest_first([self._shaken(singles[0]), *singles[1:]])
         # What is weak is found where it starts: only a strong cause has minima of its own, far away.
@@ -111,14 +109,19 @@ class Search:
         return self._concluded(nominal, likeliest_first([*singles, *pairs]))
 
     def _concluded(self, nominal: Contender, contenders: Sequence[Contender]) -> list[Contender]:
-        """Return the nominal model and all others, in steps that are short enough for the leader."""
+        """Return the nominal model and all others, each against the noise that counts."""
+        nominal, made = self._resolved(nominal, contenders)
+        return against_the_best(self.fitter, nominal, each_by_itself(self.fitter, made, self.tell))
+
+    def _resolved(self, nominal: Contender, contenders: Sequence[Contender]) -> tuple[Contender, list[Contender]]:
+        """Return the nominal model and the others in steps that are short enough for the leader."""
         made = list(contenders)
         # What moves so in one step and not in half of it is no motion of the model, and speaks for nothing.
         while self.comparison.halve_steps_for(made[0].effects):
             self.fitter.take_likeliest_noise(())
             nominal = of_nominal(self.fitter)
             made = settled(self.fitter, again(self.fitter, made), self.tell)
-        return against_the_best(self.fitter, nominal, each_by_itself(self.fitter, made, self.tell))
+        return nominal, made
 
     def _far(self, singles: Sequence[Contender]) -> list[Contender]:
         """Search far away for the best, and where they leave a gap for those that no local fit can be trusted with."""

@@ -51,10 +51,7 @@ class Stretch:
             Time of the last frame at most, s.
         """
         frames = int(np.searchsorted(reader.observed.time_s, last_s, side="right"))
-        parts = [np.arange(len(kept)) < frames for kept in floor.valid.values()]
-        found = [early[kept] for early, kept in zip(parts, floor.valid.values(), strict=True)]
-        counts = np.concatenate([*found, np.zeros(len(floor.outcome_scale), dtype=bool)])
-        return cls(reader.beginning(frames), floor.beginning(frames, counts), counts)
+        return cls(reader.beginning(frames), floor.beginning(frames), floor.counts(frames))
 
     def outcomes(self, path: Path, camera: Floats) -> Floats:
         """Return the scaled differences of the outcomes that count, shape (k,).
