@@ -6,10 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.contender import Contender, of_fit
-from tumblers.diagnosis.fit import Fitter
+from tumblers.diagnosis.fit import Fit, Fitter
 from tumblers.diagnosis.held_out import HeldOut, folds, held_out, is_foretold, shrink
 from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.simulator import Simulator
@@ -17,6 +18,8 @@ from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.field import StaticField
 
 from .lab import UPWARDS, measure, plan, without
+
+Floats = NDArray[np.float64]
 
 
 def fitter_of(trials: int) -> Fitter:
@@ -84,8 +87,8 @@ def test_where_no_trial_can_be_left_out_nothing_is_foretold(size: float) -> None
     assert not foretold([3.0], [size])
 
 
-def test_what_the_other_trials_do_not_know_is_neutral_where_one_is_left_out() -> None:
-    # A body on a slope shows its friction; one that lies on the level shows none.
+def lying_and_still() -> tuple[Fitter, Contender]:
+    """Return the fit of a friction that only the first of two trials shows: a body on a slope, and one on the level."""
     off = StaticField(strength_T=0.0, direction=(0.0, 1.0, 0.0))
     dataset = measure(
         plan([("lying", off, 50.0), ("still", off, 0.0)], duration_s=0.3), (FrictionCoefficient(factor=0.5),)
@@ -94,10 +97,33 @@ def test_what_the_other_trials_do_not_know_is_neutral_where_one_is_left_out() ->
     hypothesis = Hypothesis.of(FrictionCoefficient, [fitter.comparison.simulator.nominal(i) for i in fitter.trials])
     there = (np.array([0.5]) - hypothesis.neutral) / hypothesis.scale
     fitted = of_fit(fitter, fitter.fit(hypothesis, there))
+    assert abs(fitted.point[0]) > 0.1
+    return fitter, fitted
+
+
+def test_what_the_other_trials_do_not_know_is_neutral_where_one_is_left_out() -> None:
+    fitter, fitted = lying_and_still()
     without_lying, without_still = held_out(fitter, fitted).points
     assert without_lying is not None
     assert without_still is not None
-    assert abs(fitted.point[0]) > 0.1
     # A fit ends near the least of its objective, which is neutral there.
     assert abs(without_lying[0]) < 0.02 * abs(fitted.point[0])
     assert without_still[0] == pytest.approx(fitted.point[0], rel=0.01)
+
+
+def test_a_fit_without_a_trial_starts_from_what_the_others_know(monkeypatch: pytest.MonkeyPatch) -> None:
+    # From the point that all trials chose, least squares may not leave it, though the others do not speak for it.
+    fitter, fitted = lying_and_still()
+    starts: dict[tuple[int, ...], list[float]] = {}
+    fit = Fitter.fit
+
+    def noted(self: Fitter, hypothesis: Hypothesis, start: Floats, train: tuple[int, ...], evaluations: int) -> Fit:
+        starts.setdefault(train, []).append(float(start[0]))
+        return fit(self, hypothesis, start, train, evaluations)
+
+    monkeypatch.setattr(Fitter, "fit", noted)
+    held_out(fitter, fitted)
+    # First the derivatives are taken, where all trials have put it.
+    there = fitted.point[0]
+    assert starts[(1,)] == [there, pytest.approx(0.0, abs=1e-6)]
+    assert starts[(0,)] == [there, pytest.approx(there, rel=0.01)]

@@ -103,6 +103,16 @@ def test_steps_are_halved_where_a_hypothesis_asks_for_it() -> None:
     assert_allclose(before.position_m[-1], after.position_m[-1], atol=1e-9)
 
 
+def test_what_asks_for_a_shorter_step_gets_no_credit_for_it() -> None:
+    # So little compliance moves nothing; the error of a longer step around the nominal model would speak for it.
+    dataset = measure(plan(LYING))
+    comparison = Comparison(dataset, Simulator(dataset))
+    assert comparison.simulator.step_s[0] > ContactCompliance.longest_step_s
+    assert comparison.halve_steps_for((ContactCompliance(compliance_m_per_N=1e-6),))
+    assert comparison.simulator.step_s[0] <= ContactCompliance.longest_step_s * (1.0 + 1e-9)
+    assert comparison.simulator.nominal(0).run.step_s == comparison.simulator.step_s[0]
+
+
 def test_the_leader_is_held_in_a_step_that_is_short_enough_for_it() -> None:
     # Steps were chosen where the body still lay.
     dataset = measure(plan(LYING), (FrictionCoefficient(factor=0.5),))

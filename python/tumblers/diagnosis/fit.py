@@ -192,27 +192,30 @@ class Fitter:
             comparison.take_noise_of(around, shares=[share] * len(self.trials))
             known.append(comparison.floors)
 
-        def likeliest(mixed: Residual | None) -> tuple[float, ...]:
+        def likeliest(mixed: Residual | None) -> tuple[int, ...]:
             totals = []
             for floors in known:
                 comparison.floors = floors
                 residual = comparison.residual(paths) if mixed is None else comparison.held(paths, mixed)
                 totals.append([self.trial_cost(residual, i) + floors[i].log_determinant for i in self.trials])
-            return tuple(_SHARES[k] for k in np.argmin(np.array(totals), axis=0))
+            return tuple(np.argmin(np.array(totals), axis=0).tolist())
+
+        def take(chosen: tuple[int, ...]) -> None:
+            comparison.floors = tuple(known[k][i] for i, k in enumerate(chosen))
 
         # A trial's share moves the nuisances of all: first all have the same, then the others have theirs.
-        shares = best = likeliest(None)
+        chosen = best = likeliest(None)
         least = inf
         for _ in range(_MIXED):
-            comparison.take_noise_of(around, shares=shares)
+            take(chosen)
             mixed = comparison.residual(paths)
             total = self.cost(mixed, np.zeros(1)) + comparison.log_determinant
             if total >= least:
                 break
-            best, least = shares, total
-            shares = likeliest(mixed)
-        comparison.take_noise_of(around, shares=best)
-        return best
+            best, least = chosen, total
+            chosen = likeliest(mixed)
+        take(best)
+        return tuple(_SHARES[k] for k in best)
 
     def _weights(self, residual: Residual, chosen: Sequence[int]) -> Floats:
         """Square roots of the weights of the trials' numbers, 1 for outcomes, shape (n,)."""

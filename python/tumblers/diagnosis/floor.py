@@ -31,6 +31,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg.lapack import dtrtri
 from scipy.ndimage import maximum_filter1d
 
 from ..effects.base import Effect
@@ -207,7 +208,7 @@ class Sensitivity:
 
 
 def choose_steps(simulator: Simulator, readers: tuple[Reader, ...], effects: tuple[Effect, ...] = ()) -> bool:
-    """Halve the steps of the trials in which that shows, and return whether there was any.
+    """Halve the steps that a hypothesis is not run in, or in which that shows, and return whether there was any.
 
     Parameters
     ----------
@@ -218,7 +219,7 @@ def choose_steps(simulator: Simulator, readers: tuple[Reader, ...], effects: tup
     effects
         The hypothesis around which it is looked at.
     """
-    changed = False
+    changed = simulator.shorten_steps_for(effects)
     waiting = [i for i in range(len(readers)) if simulator.step_s[i] > _FINEST_S]
     while waiting:
         paths = simulator.run([Job(i, effects) for i in waiting] + [Job(i, effects, divisor=2) for i in waiting])
@@ -339,7 +340,7 @@ def _floor(reader: Reader, moved: Sensitivity, share: float) -> Floor:
         for change in moved.tolerances if len(t) else ():
             if name in change:
                 covariance += np.diag((share * _TOLERANCE_SPREAD * _around(change[name][valid[name]])) ** 2)
-        whiten[name] = np.linalg.inv(np.linalg.cholesky(covariance)) if len(t) else covariance
+        whiten[name] = dtrtri(np.linalg.cholesky(covariance), lower=1)[0] if len(t) else covariance
     scale = {}
     for term in reader.outcome_kinds:
         spread = (_ALPHA * moved.numerical_terms.get(term, 0.0)) ** 2

@@ -122,17 +122,15 @@ def _refitted(fitter: Fitter, fit: Fit, train: tuple[int, ...]) -> Floats:
     (JᵀJ + 1/σ_u²)⁻¹ JᵀJ u
     ```
 
-    with the derivatives J of their differences alone: what they hold stays, what they do not is neutral. Only where the
-    point of all trials follows these much better does the fit start there: a search of these would have found it, too.
+    with the derivatives J of their differences, the nuisances fitted to them alone: what they hold stays, what they do
+    not is neutral. Only where the point of all trials follows these much better does the fit start there: a search of
+    these would have found it, too.
     """
-    comparison = fitter.comparison
-    ends = np.cumsum([0, *comparison.sizes])
-    known = fit.jacobian[np.concatenate([np.arange(ends[i], ends[i + 1]) for i in train])]
-    information = known.T @ known
+    there = fitter.fit(fit.hypothesis, fit.point, train, evaluations=1)
+    information = there.jacobian.T @ there.jacobian
     start = np.linalg.solve(information + np.eye(len(fit.point)) / PRIOR_SIGMA**2, information @ fit.point)
     refitted = fitter.fit(fit.hypothesis, start, train, _EVALUATIONS)
-    here = fitter.residuals(fit.hypothesis, [fit.point], train)[0]
-    if fitter.cost(here, fit.point, train) < refitted.cost - CLEAR:
+    if there.cost < refitted.cost - CLEAR:
         refitted = fitter.fit(fit.hypothesis, fit.point, train, _EVALUATIONS)
     return refitted.point
 

@@ -95,6 +95,8 @@ class Search:
             return [nominal, *singles]
         nominal, singles = self._resolved(nominal, singles)
         singles = settled(self.fitter, singles, self.tell)
+        if singles[0].total > nominal.total - self.worth:
+            return self._concluded(nominal, singles)
         singles = likeliest_first([self._shaken(singles[0]), *singles[1:]])
         # What is weak is found where it starts: only a strong cause has minima of its own, far away.
         strong = not is_right(self.comparison, nominal.residual)

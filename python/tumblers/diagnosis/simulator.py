@@ -120,7 +120,7 @@ class Simulator:
         InputError
             An effect that cannot be added to this trial.
         """
-        scenario = self.nominal(job.trial, job.divisor * self._finer(job))
+        scenario = self.nominal(job.trial, job.divisor * self._finer(job.trial, job.effects))
         if job.edit is not None:
             scenario = job.edit(scenario)
         for effect in job.effects:
@@ -156,11 +156,23 @@ class Simulator:
         step = min(2.0 * scenario.run.fixed_step_s, _first_step(scenario.field))
         return replace(scenario, run=replace(scenario.run, step_s=step))
 
-    def _finer(self, job: Job) -> int:
-        """Return by how much the trial's step is too long for a job's effects."""
-        longest = min((effect.resolving_step_s for effect in job.effects), default=inf)
+    def shorten_steps_for(self, effects: Sequence[Effect]) -> bool:
+        """Take the steps that effects are run in for the nominal model too, and return whether any changed.
+
+        Parameters
+        ----------
+        effects
+            A hypothesis. Against a nominal model in longer steps, the smaller numerical error would speak for it.
+        """
+        before = list(self.step_s)
+        self.step_s = [step / self._finer(i, effects) for i, step in enumerate(before)]
+        return self.step_s != before
+
+    def _finer(self, trial: int, effects: Sequence[Effect]) -> int:
+        """Return by how much a trial's step is too long for effects."""
+        longest = min((effect.resolving_step_s for effect in effects), default=inf)
         finer = 1
-        while self.step_s[job.trial] / finer > longest:
+        while self.step_s[trial] / finer > longest:
             finer *= 2
         return finer
 
