@@ -30,8 +30,9 @@ from tumblers.field import StaticField
 
 from .lab import PLANS, measure, plan
 
-# A robot that lies on a slope: it slides where friction is lower than a sixth below the nominal one.
-LYING = (("lying", StaticField(strength_T=0.0, direction=(0.0, 1.0, 0.0)), 50.0),)
+OFF = StaticField(strength_T=0.0, direction=(0.0, 1.0, 0.0))
+# A robot that lies on a slope: it slides where friction is a quarter below the nominal one.
+LYING = (("lying", OFF, 50.0),)
 
 
 def quiet(_phase: str, _done: int, _total: int) -> None:
@@ -130,10 +131,12 @@ def test_the_leader_is_held_in_a_step_that_is_short_enough_for_it() -> None:
     assert still.total == pytest.approx(beside(fitter, still, still).total, rel=1e-9)
 
 
-def test_a_threshold_in_the_middle_of_a_range_is_found() -> None:
+@pytest.mark.parametrize("slope_deg", [50.0, 60.0])
+def test_a_threshold_in_a_range_is_found_far_from_neutral_and_near(slope_deg: float) -> None:
     # Friction just low enough to slide: of no use is a derivative where nothing moves, nor a start far beyond.
-    truth = FrictionCoefficient(factor=_sliding_factor())
-    dataset = measure(plan(LYING), (truth,))
+    lying = (("lying", OFF, slope_deg),)
+    truth = FrictionCoefficient(factor=_sliding_factor(slope_deg))
+    dataset = measure(plan(lying), (truth,))
     comparison = Comparison(dataset, Simulator(dataset))
     fitter = Fitter(comparison)
     search = Search(fitter, [FrictionCoefficient], quiet, 0)
@@ -146,9 +149,9 @@ def test_a_threshold_in_the_middle_of_a_range_is_found() -> None:
     assert found.factor == pytest.approx(truth.factor, rel=0.01)
 
 
-def _sliding_factor() -> float:
+def _sliding_factor(slope_deg: float = 50.0) -> float:
     """Return a factor of friction with which the body slides by about half its length."""
-    simulator = Simulator(plan(LYING))
+    simulator = Simulator(plan((("lying", OFF, slope_deg),)))
     low, high = 0.3, 1.0
     for _ in range(20):
         middle = 0.5 * (low + high)

@@ -63,8 +63,8 @@ def _along(fitter: Fitter, hypothesis: Hypothesis, end: Floats, still: float, tr
     """Return the least objective of a trial between neutral and an end of the range, and its point."""
     known = {0.0: still}
     shares: Sequence[float] = _GRID
-    halvings = _HALVINGS
-    while halvings >= 0:
+    done, most = 0, _HALVINGS
+    while shares and done <= most:
         points = [share * end for share in shares]
         residuals = fitter.residuals(hypothesis, points, (trial,))
         for share, point, residual in zip(shares, points, residuals, strict=True):
@@ -74,9 +74,11 @@ def _along(fitter: Fitter, hypothesis: Hypothesis, end: Floats, still: float, tr
         place = max(n for n, share in enumerate(order) if known[share] < least + CLEAR)
         near = order[max(place - 1, 0) : place + 2]
         shares = [0.5 * (a + b) for a, b in pairwise(near) if abs(known[a] - known[b]) > _MOVED]
-        if len(known) == 1 + len(_GRID) and abs(known[_GRID[0]] - still) > CLEAR:
+        if abs(known[order[1]] - still) <= CLEAR:
+            most = _HALVINGS
+        elif done == 0:
             # No plateau: what is better than neutral is for least squares to find, what is not may begin early.
-            halvings = 0 if least < still - CLEAR else _EARLY_HALVINGS
-        halvings = halvings - 1 if shares else -1
+            most = 0 if least < still - CLEAR else _EARLY_HALVINGS
+        done += 1
     best = min(known, key=lambda share: known[share])
     return known[best], best * end
