@@ -25,7 +25,7 @@ CLEAR = 20.0
 # Shares of the way from neutral to each end of a range that are tried, how often the stretches beside the best of them
 # are halved (where nothing moves at first, where it moves at once), for effects with no more parameters than this, for
 # each of so many trials that are farthest off; the best points that are kept.
-_GRID, _HALVINGS, _EARLY_HALVINGS, _FEW, _WORST, _HINTS = (0.2, 0.5, 0.8, 1.0), 10, 3, 2, 3, 2
+_GRID, _HALVINGS, _EARLY_HALVINGS, _FEW, _WORST, _HINTS = (0.2, 0.5, 0.8, 1.0), 12, 5, 2, 3, 2
 # A stretch whose ends differ by less has nothing in it; what is beyond a threshold may by chance be as bad as before.
 _MOVED = 2.0
 
