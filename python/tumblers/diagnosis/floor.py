@@ -320,48 +320,43 @@ def _distance(reader: Reader, path: Path | None, other: Path | None) -> float:
 
 
 def _around(change: Floats) -> Floats:
-    """Return the greatest size of a change at each frame and its neighbours, shape (n,)."""
+    """Return the greatest size of changes at each frame and its neighbours, shape (..., n)."""
     return np.asarray(maximum_filter1d(np.abs(change), 3))
 
 
 def _floor(reader: Reader, moved: Sensitivity, share: float) -> Floor:
     observed = reader.observed
     time = np.maximum(observed.time_s, 0.0)
+    shared = (*moved.tolerances, moved.coarse)
     whiten: dict[str, Floats] = {}
     valid: dict[str, NDArray[np.bool_]] = {}
+    columns: list[Floats] = []
     for name in observed.channels:
-        valid[name] = observed.found(name)
-        t = time[valid[name]]
-        covariance = np.eye(len(t)) * observed.noise[name] ** 2
+        valid[name] = found = observed.found(name)
+        t = time[found]
+        changes = np.array([change[name][found] if name in change else np.zeros(len(t)) for change in shared])
+        variance = observed.noise[name] ** 2 + np.sum((share * _TOLERANCE_SPREAD * _around(changes[:-1])) ** 2, axis=0)
+        covariance = np.zeros((len(t), len(t)))
         if len(t) and name in moved.numerical:
-            d = share * moved.numerical[name][valid[name]]
-            covariance += _ALPHA**2 * np.outer(d, d) + np.diag((_STEP_SPREAD * _around(d)) ** 2)
-            covariance += float(np.mean(d**2)) / reader.duration_s * np.minimum.outer(t, t)
-        for change in moved.tolerances if len(t) else ():
-            if name in change:
-                covariance += np.diag((share * _TOLERANCE_SPREAD * _around(change[name][valid[name]])) ** 2)
+            d = share * moved.numerical[name][found]
+            variance += (_STEP_SPREAD * _around(d)) ** 2
+            covariance = _ALPHA**2 * np.outer(d, d) + np.mean(d**2) / reader.duration_s * np.minimum.outer(t, t)
+        covariance[np.diag_indices(len(t))] += variance
         whiten[name] = dtrtri(np.linalg.cholesky(covariance), lower=1)[0] if len(t) else covariance
+        columns.append(whiten[name] @ changes.T)
     scale = {}
     for term in reader.outcome_kinds:
         spread = (_ALPHA * moved.numerical_terms.get(term, 0.0)) ** 2
         # A change beyond the noise is a threshold that was crossed: no nuisance is linear there.
         spread += sum(max(change.get(term, 0.0) ** 2 - 1.0, 0.0) for change in moved.tolerance_terms)
         scale[term] = float(1.0 / np.sqrt(1.0 + spread))
-    columns = [
-        np.concatenate(
-            [whiten[name] @ change.get(name, np.zeros(len(time)))[valid[name]] for name in whiten]
-            + [np.array([terms.get(term, 0.0) * scale[term] for term in scale])]
-        )
-        for change, terms in (
-            *zip(moved.tolerances, moved.tolerance_terms, strict=True),
-            (moved.coarse, moved.coarse_terms),
-        )
-    ]
+    terms = (*moved.tolerance_terms, moved.coarse_terms)
+    columns.append(np.array([[change.get(term, 0.0) * scale[term] for change in terms] for term in scale]))
     return Floor(
         whiten=whiten,
         valid=valid,
         outcome_scale=scale,
-        tolerance=np.column_stack(columns),
+        tolerance=np.concatenate([block.reshape(-1, SHARED) for block in columns]),
         # Of the inverse Cholesky factors only the diagonals count.
         log_determinant=-2.0
         * float(

@@ -129,7 +129,7 @@ def _refitted(fitter: Fitter, fit: Fit, train: tuple[int, ...]) -> Floats:
     there = fitter.fit(fit.hypothesis, fit.point, train, evaluations=1)
     information = there.jacobian.T @ there.jacobian
     start = np.linalg.solve(information + np.eye(len(fit.point)) / PRIOR_SIGMA**2, information @ fit.point)
-    refitted = fitter.fit(fit.hypothesis, start, train, _EVALUATIONS)
+    refitted = fitter.fit(fit.hypothesis, np.asarray(start, dtype=np.float64), train, _EVALUATIONS)
     if there.cost < refitted.cost - CLEAR:
         refitted = fitter.fit(fit.hypothesis, fit.point, train, _EVALUATIONS)
     return refitted.point

@@ -149,6 +149,7 @@ class NuisanceFit:
         normal, right = np.diag(shared_weight), -shared_weight * shared
         if held:
             right[2:] = 0.0
+        count = len(shared)
         blocks: dict[int, tuple[Floats, Floats, Floats]] = {}
         for i, path in enumerate(paths):
             if path is None:
@@ -160,18 +161,19 @@ class NuisanceFit:
                 table = np.concatenate([floor.whiten[name] @ found[name][kept] for name, kept in floor.valid.items()])
             outcomes = stretches[i].outcomes(path, shared[:2])
             table = np.vstack([table, np.column_stack([np.zeros((len(outcomes), 5)), outcomes])])
-            a, r = table[:, :3], table[:, 5] - floor.tolerance @ shared[2:]
-            g = np.hstack([table[:, 3:5], np.zeros_like(floor.tolerance) if held else -floor.tolerance])
+            # By the trial's own, by what all share, and what is left: one product has all of the normal equations.
+            rows = np.empty((len(table), 3 + count + 1))
+            rows[:, :5], rows[:, 5:-1] = table[:, :5], 0.0 if held else -floor.tolerance
+            rows[:, -1] = table[:, 5] - floor.tolerance @ shared[2:]
             # One trial that the model cannot follow must not turn the camera of all.
-            counted = np.sqrt(weight_of(r[: floor.tracked], tracked[i]))
-            a, g, r = counted * a, counted * g, counted * r
+            products = weight_of(rows[: floor.tracked, -1], tracked[i]) * (rows.T @ rows)
             weight = 1.0 / self.local_sigmas[i] ** 2
-            inverse = np.linalg.inv(a.T @ a + np.diag(weight))
-            by_shared, own = a.T @ g, a.T @ r + weight * local[i]
+            inverse = np.linalg.inv(products[:3, :3] + np.diag(weight))
+            by_shared, own = products[:3, 3:-1], products[:3, -1] + weight * local[i]
             blocks[i] = np.asarray(inverse, dtype=np.float64), by_shared, own
             if i in train:
-                normal += g.T @ g - by_shared.T @ inverse @ by_shared
-                right -= g.T @ r - by_shared.T @ inverse @ own
+                normal += products[3:-1, 3:-1] - by_shared.T @ inverse @ by_shared
+                right -= products[3:-1, -1] - by_shared.T @ inverse @ own
         change = np.linalg.solve(normal, right)
         shared = np.clip(shared + change, self._shared_low, self._shared_high)
         local = local.copy()

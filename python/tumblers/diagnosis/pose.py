@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,9 +45,14 @@ class Path:
         place = np.clip(time_s / self.interval_s, 0.0, len(self.position_m) - 1.000001)
         row = place.astype(np.intp)
         share = (place - row)[:, None]
-        position = self.position_m[row] * (1.0 - share) + self.position_m[row + 1] * share
-        turned = self.orientation[row] * (1.0 - share) + self.orientation[row + 1] * share
-        return position, turned / np.linalg.norm(turned, axis=1, keepdims=True)
+        between = self._poses[row] * (1.0 - share) + self._poses[row + 1] * share
+        position, turned = between[:, :3], between[:, 3:]
+        return position, turned / np.sqrt(np.einsum("ij,ij->i", turned, turned))[:, None]
+
+    @cached_property
+    def _poses(self) -> Floats:
+        # Side by side, so that a time is looked up once.
+        return np.hstack([self.position_m, self.orientation])
 
     def mode_at(self, time_s: Floats) -> NDArray[np.int8]:
         """Return the contact mode at times (k,), s."""
