@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from math import inf
 
 from ..progress import OnPhase
 from .contender import Contender, likeliest_first, of_fit, of_nominal
@@ -32,8 +33,9 @@ __all__ = [
 IDLE_POINTS, POLISH_POINTS = 2, 6
 # What takes so much off the objective asks for another round.
 ENOUGH = 5.0
-# How many fits are held against their own noise, and how often it is measured after a further fit at most.
-_SETTLED, _ROUNDS = 2, 2
+# How many fits are held against their own noise, how many where that gains much, and how often it is measured after a
+# further fit at most.
+_SETTLED, _MOST_SETTLED, _ROUNDS = 2, 6, 2
 # What comes so near to the best is held against its own noise, so many at most.
 _NEAR, _MOST_NEAR = 300.0, 6
 
@@ -67,7 +69,9 @@ def against_itself(fitter: Fitter, fit: Fit) -> Contender:
 
 
 def settled(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase) -> list[Contender]:
-    """Hold the best so many against their own noise and fit them on; the best first.
+    """Hold the best against their own noise and fit them on; the best first.
+
+    Two of them, and those that would lead if they gained as much by it as one of these: near a threshold that is much.
 
     Parameters
     ----------
@@ -79,10 +83,14 @@ def settled(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase) -> l
         Is told the phase, how much of it is done, and of how much.
     """
     made = likeliest_first(contenders)
-    for k, contender in enumerate(made[:_SETTLED]):
+    gain, leading = 0.0, inf
+    for k, contender in enumerate(made[:_MOST_SETTLED]):
+        if k >= _SETTLED and contender.total - gain >= leading:
+            break
         if contender.settled:
+            leading = min(leading, contender.total)
             continue
-        tell("another look at the best", k, _SETTLED)
+        tell("another look at the best", min(k, _SETTLED), _SETTLED)
         assert contender.fit is not None
         best = against_itself(fitter, contender.fit)
         for _ in range(_ROUNDS):
@@ -97,6 +105,7 @@ def settled(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase) -> l
         fitter.take_likeliest_noise(best.effects)
         here = fitter.fit(best.fit.hypothesis, best.point, evaluations=1)
         made[k] = replace(of_fit(fitter, here), settled=True)
+        gain, leading = max(gain, contender.total - made[k].total), min(leading, made[k].total)
     return likeliest_first(made)
 
 

@@ -51,8 +51,8 @@ _WANTING = 1.1
 _REFINED, _PROMISING = 2, 4
 # Effects to which a second is added, the farther ones only where the best leaves a gap.
 _FIRSTS = 2
-# How many of the points around a fit are fitted on in so many trial points, and how often all this.
-_SHAKEN_FITS, _SHAKEN_POINTS, _SHAKES = 2, 3, 2
+# Fits that are looked around, how many of the points around one are fitted on in so many trial points, and how often.
+_SHAKEN, _SHAKEN_FITS, _SHAKEN_POINTS, _SHAKES = 3, 2, 3, 2
 # Pairs whose beginnings are searched, and singles for which one of the best pair is exchanged.
 _PAIRS_REFINED, _EXCHANGED = 2, 6
 
@@ -97,7 +97,7 @@ class Search:
         singles = settled(self.fitter, singles, self.tell)
         if singles[0].total > nominal.total - self.worth:
             return self._concluded(nominal, singles)
-        singles = likeliest_first([self._shaken(singles[0]), *singles[1:]])
+        singles = self._all_shaken(singles)
         # What is weak is found where it starts: only a strong cause has minima of its own, far away.
         strong = not is_right(self.comparison, nominal.residual)
         if strong and self._is_wanting(singles[0]):
@@ -183,6 +183,15 @@ class Search:
                     other = of_fit(fitter, fitter.fit(hypothesis, point, evaluations=_LEADING_POINTS))
                     made[k] = likeliest([made[k], other])
         return made
+
+    def _all_shaken(self, contenders: Sequence[Contender]) -> list[Contender]:
+        """Look around the best, and around those that are about as good: none is to lead because it alone was."""
+        near = contenders[0].total + CLEAR
+        chosen = [k for k, contender in enumerate(contenders) if contender.settled and contender.total < near]
+        made = list(contenders)
+        for k in chosen[:_SHAKEN]:
+            made[k] = self._shaken(contenders[k])
+        return likeliest_first(made)
 
     def _shaken(self, contender: Contender) -> Contender:
         """Look around a fit for a better one, which small local minima keep least squares from.
