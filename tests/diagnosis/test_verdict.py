@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 from tumblers.diagnosis.attribute import Attribution
 from tumblers.diagnosis.comparison import Residual
 from tumblers.diagnosis.contender import Contender
-from tumblers.diagnosis.verdict import judge
+from tumblers.diagnosis.verdict import judge, ties
 
 COUNT = 400
 NO_NUISANCES = np.zeros(0)
@@ -53,3 +54,25 @@ def test_where_nothing_is_likelier_than_the_nominal_model_it_is_right_or_nothing
     attribution = Attribution((nominal, other), 1.0, nominal_is_right)
     found, chosen = judge(SimpleNamespace(sizes=(COUNT,)), attribution, True)  # type: ignore[arg-type]
     assert (found, chosen) == (verdict, nominal)
+
+
+@pytest.mark.parametrize(
+    ("evidence", "behind", "tied"),
+    [
+        # As likely, and preferred for having fewer parameters: no trial speaks against the other.
+        (-8.0, 2.0, True),
+        (-2.0, 20.0, True),
+        (-8.0, 20.0, False),
+    ],
+)
+def test_what_no_trial_speaks_against_is_tied_however_parsimonious_the_best_is(
+    evidence: float, behind: float, tied: bool
+) -> None:
+    best = replace(contender("substrate_tilt", 0.8, 0.8), cost=1500.0)
+    other = replace(
+        contender("stray_field_gradient", 1.0, 0.1), cost=1500.0 + 2.0 * 8.0 * behind, log_evidence=evidence
+    )
+    attribution = Attribution((best, other), 8.0, False)
+    comparison = SimpleNamespace(readers=(None,))
+    found = ties(comparison, attribution, best)  # type: ignore[arg-type]
+    assert found == {"substrate_tilt": ("stray_field_gradient",) if tied else ()}

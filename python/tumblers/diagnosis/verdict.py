@@ -14,7 +14,7 @@ __all__ = ["judge", "ties"]
 
 # Where noise may explain it all, an effect is named only where that is less probable than this.
 _LEAST_DOUBT = 0.05
-# Evidence that is less than this factor apart (ln 20), or predictions that differ by less than this in noise sigmas.
+# Evidence or likelihoods less than this factor apart (ln 20), or predictions that differ by less than this in sigmas.
 _TIED, _SAME = 3.0, 0.05
 
 
@@ -43,6 +43,8 @@ def judge(comparison: Comparison, attribution: Attribution, foretold: bool) -> t
 def ties(comparison: Comparison, attribution: Attribution, chosen: Contender) -> dict[str, tuple[str, ...]]:
     """Return for each effect of the chosen set those that these trials cannot tell apart from it.
 
+    Parsimony may prefer one to another that has more parameters; that no trial speaks against the other is a tie still.
+
     Parameters
     ----------
     comparison
@@ -63,6 +65,7 @@ def ties(comparison: Comparison, attribution: Attribution, chosen: Contender) ->
         if len(swapped) != 1:
             continue
         apart = float(np.sqrt(np.mean((other.residual.over(trials) - said) ** 2)))
-        if chosen.log_evidence - other.log_evidence < _TIED or apart < _SAME:
+        behind = 0.5 * (other.total - chosen.total) / attribution.dispersion
+        if min(chosen.log_evidence - other.log_evidence, behind) < _TIED or apart < _SAME:
             out[swapped[0]].append(put_in[0])
     return {name: tuple(dict.fromkeys(others)) for name, others in out.items()}
