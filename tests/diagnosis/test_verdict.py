@@ -68,10 +68,8 @@ def test_where_nothing_is_likelier_than_the_nominal_model_it_is_right_or_nothing
 def test_what_no_trial_speaks_against_is_tied_however_parsimonious_the_best_is(
     evidence: float, behind: float, tied: bool
 ) -> None:
-    best = replace(contender("substrate_tilt", 0.8, 0.8), cost=1500.0)
-    other = replace(
-        contender("stray_field_gradient", 1.0, 0.1), cost=1500.0 + 2.0 * 8.0 * behind, log_evidence=evidence
-    )
+    best = contender("substrate_tilt", 0.8, 0.8)
+    other = replace(contender("stray_field_gradient", 1.0, 0.1), log_likelihood=-behind, log_evidence=evidence)
     attribution = Attribution((best, other), 8.0, False)
     comparison = SimpleNamespace(readers=(None,))
     found = ties(comparison, attribution, best)  # type: ignore[arg-type]

@@ -125,7 +125,12 @@ def _seen(fitter: Fitter, contender: Contender, first: bool) -> Contender:
         now = of_fit(fitter, fitter.fit(contender.fit.hypothesis, contender.point, evaluations=_LAST_POINTS))
     else:
         now = of_fit(fitter, fitter.again(contender.fit))
-    return replace(now, log_evidence=contender.log_evidence, probability=contender.probability)
+    return replace(
+        now,
+        log_likelihood=contender.log_likelihood,
+        log_evidence=contender.log_evidence,
+        probability=contender.probability,
+    )
 
 
 def _ranked(
@@ -147,12 +152,13 @@ def _ranked(
         outcomes = sum(
             robust_cost(values[len(values) - count :]) for values, count in zip(c.residual.trials, noted, strict=True)
         )
-        evidence = -0.5 * (c.total + (alike - 1.0) * outcomes) / dispersion + prior[len(c.names)]
+        likelihood = -0.5 * (c.total + (alike - 1.0) * outcomes) / dispersion
+        evidence = likelihood + prior[len(c.names)]
         evidence -= _PER_PARAMETER * len(c.point) + _PER_PLACE * sum(place[name] for name in c.names)
         if c.fit is not None:
             information = c.fit.information(dispersion) * PRIOR_SIGMA**2
             evidence -= 0.5 * float(np.linalg.slogdet(information)[1])
-        scored.append((evidence, c))
+        scored.append((evidence, replace(c, log_likelihood=likelihood)))
     top = max(evidence for evidence, _ in scored)
     weights = np.exp([evidence - top for evidence, _ in scored])
     shares = (1.0 - LAPSE) * weights / weights.sum() + LAPSE / len(weights)

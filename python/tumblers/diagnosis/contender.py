@@ -36,6 +36,8 @@ class Contender:
         ln det of that noise's covariance over that of the nominal model's.
     settled
         Whether it was fitted against the noise around itself, not around another.
+    log_likelihood
+        ln of the likelihood at the best point, as evidence counts it.
     log_evidence
         ln Z, the prior included.
     probability
@@ -48,6 +50,7 @@ class Contender:
     cost: float
     log_determinant: float = 0.0
     settled: bool = False
+    log_likelihood: float = 0.0
     log_evidence: float = 0.0
     probability: float = 0.0
 

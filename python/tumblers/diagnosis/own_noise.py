@@ -36,6 +36,8 @@ ENOUGH = 5.0
 # How many fits are held against their own noise, how many where that gains much, and how often it is measured after a
 # further fit at most.
 _SETTLED, _MOST_SETTLED, _ROUNDS = 2, 6, 2
+# What another may gain by its own noise, over the most that one has gained.
+_AS_MUCH = 1.5
 # What comes so near to the best is held against its own noise, so many at most.
 _NEAR, _MOST_NEAR = 300.0, 6
 
@@ -71,7 +73,7 @@ def against_itself(fitter: Fitter, fit: Fit) -> Contender:
 def settled(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase) -> list[Contender]:
     """Hold the best against their own noise and fit them on; the best first.
 
-    Two of them, and those that would lead if they gained as much by it as one of these: near a threshold that is much.
+    Two of them, and those that would lead if they gained about as much by it: near a threshold that is much.
 
     Parameters
     ----------
@@ -85,7 +87,7 @@ def settled(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase) -> l
     made = likeliest_first(contenders)
     gain, leading = 0.0, inf
     for k, contender in enumerate(made[:_MOST_SETTLED]):
-        if k >= _SETTLED and contender.total - gain >= leading:
+        if k >= _SETTLED and contender.total - _AS_MUCH * gain >= leading:
             break
         if contender.settled:
             leading = min(leading, contender.total)

@@ -65,7 +65,7 @@ def ties(comparison: Comparison, attribution: Attribution, chosen: Contender) ->
         if len(swapped) != 1:
             continue
         apart = float(np.sqrt(np.mean((other.residual.over(trials) - said) ** 2)))
-        behind = 0.5 * (other.total - chosen.total) / attribution.dispersion
+        behind = chosen.log_likelihood - other.log_likelihood
         if min(chosen.log_evidence - other.log_evidence, behind) < _TIED or apart < _SAME:
             out[swapped[0]].append(put_in[0])
     return {name: tuple(dict.fromkeys(others)) for name, others in out.items()}
