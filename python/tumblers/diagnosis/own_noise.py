@@ -70,10 +70,10 @@ def against_itself(fitter: Fitter, fit: Fit) -> Contender:
     return of_fit(fitter, fitter.again(fit))
 
 
-def settled(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase) -> list[Contender]:
+def settled(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase, count: int = _SETTLED) -> list[Contender]:
     """Hold the best against their own noise and fit them on; the best first.
 
-    Two of them, and those that would lead if they gained about as much by it: near a threshold that is much.
+    So many of them, and those that would lead if they gained about as much by it: near a threshold that is much.
 
     Parameters
     ----------
@@ -83,16 +83,18 @@ def settled(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase) -> l
         Without the nominal model.
     tell
         Is told the phase, how much of it is done, and of how much.
+    count
+        How many at least.
     """
     made = likeliest_first(contenders)
     gain, leading = 0.0, inf
     for k, contender in enumerate(made[:_MOST_SETTLED]):
-        if k >= _SETTLED and contender.total - _AS_MUCH * gain >= leading:
+        if k >= count and contender.total - _AS_MUCH * gain >= leading:
             break
         if contender.settled:
             leading = min(leading, contender.total)
             continue
-        tell("another look at the best", min(k, _SETTLED), _SETTLED)
+        tell("another look at the best", min(k, count), count)
         assert contender.fit is not None
         best = against_itself(fitter, contender.fit)
         for _ in range(_ROUNDS):

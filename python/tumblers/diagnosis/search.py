@@ -44,6 +44,8 @@ _WORTH = 9.0
 # Trial points of a fit: of an effect that leads after the scan (so many do), and of another (where nothing is better
 # than neutral only the derivatives are taken).
 _LEADING, _LEADING_POINTS, _POINTS = 6, 6, 4
+# Effects that are held against their own noise before one counts as the best.
+_OWN = 4
 # A gap is left where the mean square stays above this against the likeliest noise.
 _WANTING = 1.1
 # Hypotheses that are fitted again from the beginnings of the trials; and of those whose points over the range follow
@@ -94,7 +96,7 @@ class Search:
         if not singles or singles[0].total > nominal.total - self.worth:
             return [nominal, *singles]
         nominal, singles = self._resolved(nominal, singles)
-        singles = settled(self.fitter, singles, self.tell)
+        singles = settled(self.fitter, singles, self.tell, _OWN)
         if singles[0].total > nominal.total - self.worth:
             return self._concluded(nominal, singles)
         singles = self._all_shaken(singles)
@@ -179,7 +181,8 @@ class Search:
             points = beyond_thresholds(fitter, hypothesis, nominal.residual)
             self.hints[contender.names] = points
             for point, residual in zip(points, fitter.residuals(hypothesis, points), strict=True):
-                if fitter.cost(residual, point) < made[k].cost - CLEAR:
+                # Right for a trial, it may be about as wrong as neutral for all: what else it asks for, the fit shows.
+                if fitter.cost(residual, point) < made[k].cost + CLEAR:
                     other = of_fit(fitter, fitter.fit(hypothesis, point, evaluations=_LEADING_POINTS))
                     made[k] = likeliest([made[k], other])
         return made
