@@ -43,17 +43,22 @@ _NEAR, _MOST_NEAR = 300.0, 6
 
 
 def again(fitter: Fitter, contenders: Sequence[Contender]) -> list[Contender]:
-    """Hold the same fits against the noise of the moment, the likeliest first.
+    """Hold the same fits against the noise of the moment, what was settled against its own; the likeliest first.
 
     Parameters
     ----------
     fitter
-        Of the dataset.
+        Of the dataset, in other steps than before.
     contenders
         The nominal model among them is left out.
     """
-    fits = [contender.fit for contender in contenders if contender.fit is not None]
-    return likeliest_first(of_fit(fitter, fitter.again(fit)) for fit in fits)
+    others = [contender for contender in contenders if not contender.settled]
+    made = [of_fit(fitter, fitter.again(contender.fit)) for contender in others if contender.fit is not None]
+    # At a threshold, which another step moves, the point itself may look hopeless against the nominal model's.
+    for contender in contenders:
+        if contender.settled and contender.fit is not None:
+            made.append(against_itself(fitter, contender.fit))
+    return likeliest_first(made)
 
 
 def against_itself(fitter: Fitter, fit: Fit) -> Contender:

@@ -124,7 +124,7 @@ class Search:
         while self.comparison.halve_steps_for(made[0].effects):
             self.fitter.take_likeliest_noise(())
             nominal = of_nominal(self.fitter)
-            made = settled(self.fitter, again(self.fitter, made), self.tell)
+            made = settled(self.fitter, again(self.fitter, made), self.tell, _OWN)
         return nominal, made
 
     def _far(self, singles: Sequence[Contender]) -> list[Contender]:
