@@ -14,7 +14,7 @@ from tumblers.diagnosis.contender import of_fit, of_nominal
 from tumblers.diagnosis.fit import Fitter
 from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.loss import FAR, robust_cost
-from tumblers.diagnosis.own_noise import against_the_best, beside
+from tumblers.diagnosis.own_noise import against_itself, against_the_best, beside
 from tumblers.diagnosis.pairs import firsts
 from tumblers.diagnosis.search import Search
 from tumblers.diagnosis.simulator import STEPS_S, Job, Simulator
@@ -105,13 +105,25 @@ def test_steps_are_halved_where_a_hypothesis_asks_for_it() -> None:
 
 
 def test_what_asks_for_a_shorter_step_gets_no_credit_for_it() -> None:
-    # So little compliance moves nothing; the error of a longer step around the nominal model would speak for it.
-    dataset = measure(plan(LYING))
-    comparison = Comparison(dataset, Simulator(dataset))
-    assert comparison.simulator.step_s[0] > ContactCompliance.longest_step_s
-    assert comparison.halve_steps_for((ContactCompliance(compliance_m_per_N=1e-6),))
+    # So little compliance moves nothing; against the error of a longer step around the nominal model it would lead.
+    dataset = measure(plan(PLANS[2:3]), divisor=16)
+    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
+    comparison = fitter.comparison
+    # A step that nothing asked to be shorter.
+    comparison.simulator.step_s[0] = STEPS_S[0]
+    comparison._start()
+    hypothesis = Hypothesis.of(ContactCompliance, [comparison.simulator.nominal(0)])
+    little = (np.array(ContactCompliance.to_fit([1e-6])) - hypothesis.neutral) / hypothesis.scale
+
+    def ahead() -> float:
+        fitter.take_likeliest_noise(())
+        nominal = of_nominal(fitter)
+        return nominal.total - against_itself(fitter, fitter.fit(hypothesis, little, evaluations=1)).total
+
+    before = ahead()
+    assert comparison.halve_steps_for(hypothesis.effects(little))
     assert comparison.simulator.step_s[0] <= ContactCompliance.longest_step_s * (1.0 + 1e-9)
-    assert comparison.simulator.nominal(0).run.step_s == comparison.simulator.step_s[0]
+    assert abs(ahead()) < 1.0 < before
 
 
 def test_the_leader_is_held_in_a_step_that_is_short_enough_for_it() -> None:

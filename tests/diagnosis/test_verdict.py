@@ -59,13 +59,13 @@ def test_where_nothing_is_likelier_than_the_nominal_model_it_is_right_or_nothing
 @pytest.mark.parametrize(
     ("evidence", "behind", "tied"),
     [
-        # As likely, and preferred for having fewer parameters: no trial speaks against the other.
+        # About as likely; the best is preferred for having fewer parameters.
         (-8.0, 2.0, True),
         (-2.0, 20.0, True),
         (-8.0, 20.0, False),
     ],
 )
-def test_what_no_trial_speaks_against_is_tied_however_parsimonious_the_best_is(
+def test_what_is_about_as_likely_is_tied_however_parsimonious_the_best_is(
     evidence: float, behind: float, tied: bool
 ) -> None:
     best = contender("substrate_tilt", 0.8, 0.8)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
@@ -52,6 +53,11 @@ class Jitter:
         factors = {name: 1.0 + NUMBERS * float(rng.normal()) for name in names}
         lengths = tuple(1.0 + DIMENSIONS * float(rng.normal()) for _ in fields(robot.shape))
         return cls(**factors, dimensions=lengths)
+
+    @classmethod
+    def of_table(cls, table: Mapping[str, Any]) -> Jitter:
+        """Return the factors that `table` has by name; 1 for those that are left out."""
+        return cls(**{**table, "dimensions": tuple(table.get("dimensions", ()))})
 
     def edit(self, scenario: Scenario) -> Scenario:
         """Return a nominal scenario with the world's numbers.

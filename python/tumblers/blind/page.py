@@ -9,7 +9,7 @@ from ..diagnosis.floor import TOLERANCES
 from .draw import QUIET_SIGMA, QUIET_TRIAL_SIGMA, REPEATS
 from .jitter import DIMENSIONS, NUMBERS
 from .layout import STEADY_SIGMA
-from .score import Criterion, Scores, Share
+from .score import TIE_SIGMA, Criterion, Scores, Share
 
 __all__ = ["page_of", "print_scores"]
 
@@ -43,7 +43,9 @@ def page_of(scores: Scores) -> str:
         "missing; causes whose motion depends on the world's own step by more than "
         f"{100.0 * REPEATS:.0f} % of what they change are drawn again in another lab, up to a dozen times, for a lab "
         "shows what it sees again; a pair of effects that does not show in three labs is drawn again. An effect counts "
-        "as named first where it leads the effects of the diagnosis, whatever the verdict.",
+        "as named first where it leads the effects of the diagnosis, whatever the verdict; as truly tied where the "
+        "diagnosis itself says that it cannot tell it from the first, and the first's estimate shows with the lab's "
+        f"numbers what the truth shows with the world's, to {TIE_SIGMA:g} sigma, by simulation.",
         "## What has to hold",
         _table(
             ("", "found", "wanted", "of", "met"),

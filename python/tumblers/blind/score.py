@@ -12,15 +12,16 @@ from statistics import mean, median
 from typing import Any
 
 from ..errors import InputError, TumblersError
+from .jitter import Jitter
 from .records import Record, read_records
-from .ties import effect_of, least_difference_sigma
+from .ties import difference_sigma, effect_of
 
 __all__ = ["Criterion", "Scores", "Share", "TieCheck", "score", "score_records"]
 
 FORMAT = "tumblers-blind-scores/1"
 STRENGTH_BINS = ((0.0, 1.0), (1.0, 3.0), (3.0, 10.0), (10.0, inf))
 PROBABILITY_BINS = ((0.0, 0.2), (0.2, 0.4), (0.4, 0.6), (0.6, 0.8), (0.8, 1.0))
-# An effect named for another one is a tie where, within its intervals, they differ by less than the noise.
+# An effect named for another one is a tie where what it says differs from the true world by less than the noise.
 TIE_SIGMA = 1.0
 _CLEAR = 3.0
 _SLOWEST_S = 180.0
@@ -285,20 +286,14 @@ def _tie_sigma(folder: Path, record: Record) -> float:
     assert record.diagnosis is not None
     try:
         truth = [effect_of(e.name, e.parameters) for e in record.answer.effects]
+        chosen = [
+            effect_of(e["name"], {key: p["estimate"] for key, p in e["parameters"].items()})
+            for e in record.diagnosis["effects"]
+        ]
     except TumblersError:
         return inf
-    stated = [
-        (e["name"], {key: _ends(interval) for key, interval in e["parameters"].items()})
-        for e in record.diagnosis["effects"]
-    ]
-    return least_difference_sigma(folder, truth, stated, TIE_SIGMA)
-
-
-def _ends(interval: Mapping[str, Any]) -> tuple[float, float, float]:
-    """Return the estimate and both ends of an interval; the estimate for an end that is open."""
-    estimate = float(interval["estimate"])
-    low, high = (estimate if interval[key] is None else float(interval[key]) for key in ("low", "high"))
-    return estimate, low, high
+    # Estimates follow the world, whose numbers are off from the nominal ones: the truth is seen there.
+    return difference_sigma(folder, truth, chosen, Jitter.of_table(record.answer.jitter))
 
 
 def _confusion(records: Sequence[Record]) -> dict[str, dict[str, int]]:

@@ -7,23 +7,20 @@ from math import inf
 from os import PathLike
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.optimize import minimize
 
 from ..dataset import Dataset, LabTrial, load
 from ..effects.base import Effect
 from ..effects.catalogue import get
 from ..errors import TumblersError
+from .jitter import Jitter
 from .lab import Lab, Plan
 from .law import EffectLaw
 from .strength import strength
 from .world import Scene, watch
 
-__all__ = ["difference_sigma", "effect_of", "least_difference_sigma"]
+__all__ = ["difference_sigma", "effect_of"]
 
 _STEP_S = 1.4e-4
-# Points that a search within intervals tries at most.
-_TRIED = 60
 _FRAMES_PER_SECOND = 60.0
 
 
@@ -47,7 +44,10 @@ def effect_of(name: str, parameters: Mapping[str, float]) -> Effect:
 
 
 def difference_sigma(
-    dataset: Dataset | str | PathLike[str], first: Sequence[Effect], second: Sequence[Effect]
+    dataset: Dataset | str | PathLike[str],
+    first: Sequence[Effect],
+    second: Sequence[Effect],
+    jitter: Jitter | None = None,
 ) -> float:
     """Return by how many standard deviations of the noise two explanations differ on a dataset's trials.
 
@@ -57,6 +57,8 @@ def difference_sigma(
         The dataset, or its folder.
     first, second
         The effects of each explanation.
+    jitter
+        How far the numbers of the world in which the first are at work are from the nominal ones; not at all if None.
 
     Returns
     -------
@@ -66,69 +68,14 @@ def difference_sigma(
     data = dataset if isinstance(dataset, Dataset) else load(dataset)
     lab = _lab(data)
     try:
-        return strength(lab, _scenes(lab, first), _scenes(lab, second)).sigma
+        return strength(lab, _scenes(lab, first, jitter or Jitter()), _scenes(lab, second, Jitter())).sigma
     except (ArithmeticError, TumblersError):
         return inf
 
 
-def least_difference_sigma(
-    dataset: Dataset | str | PathLike[str],
-    truth: Sequence[Effect],
-    stated: Sequence[tuple[str, Mapping[str, tuple[float, float, float]]]],
-    enough: float,
-) -> float:
-    """Return `difference_sigma` of the truth and of what a diagnosis states, at the best point of its intervals.
-
-    Its estimates follow the world's numbers, which are off from the nominal ones; the truth is seen with these.
-
-    Parameters
-    ----------
-    dataset
-        The dataset, or its folder.
-    truth
-        The effects at work.
-    stated
-        Name of each stated effect, and by key the estimate, the low and the high end of its interval.
-    enough
-        Below this no better point is sought.
-    """
-    data = dataset if isinstance(dataset, Dataset) else load(dataset)
-    keys = [(n, key) for n, (_, parameters) in enumerate(stated) for key in parameters]
-    estimate, low, high = (np.array([stated[n][1][key][k] for n, key in keys]) for k in range(3))
-    estimate = np.clip(estimate, low, high)
-    width = high - low
-    least = inf
-
-    def difference(point: NDArray[np.float64]) -> float:
-        nonlocal least
-        if least < enough:
-            return least
-        values = np.clip(low + width * point, low, high)
-        given: list[dict[str, float]] = [{} for _ in stated]
-        for (n, key), value in zip(keys, values.tolist(), strict=True):
-            given[n][key] = value
-        try:
-            effects = [effect_of(name, parameters) for (name, _), parameters in zip(stated, given, strict=True)]
-        except TumblersError:
-            return inf
-        least = min(least, found := difference_sigma(data, truth, effects))
-        return found
-
-    start = np.where(width > 0.0, (estimate - low) / np.where(width > 0.0, width, 1.0), 0.5)
-    if difference(start) >= enough and np.any(width > 0.0):
-        minimize(
-            difference,
-            start,
-            method="Powell",
-            bounds=[(0.0, 1.0)] * len(keys),
-            options={"maxfev": _TRIED, "xtol": 0.01},
-        )
-    return least
-
-
-def _scenes(lab: Lab, effects: Sequence[Effect]) -> list[Scene]:
+def _scenes(lab: Lab, effects: Sequence[Effect], jitter: Jitter) -> list[Scene]:
     laws = [EffectLaw(effect) for effect in effects]
-    return [watch(lab.scenario(plan), laws, lab.frames(plan), solver="reduced") for plan in lab.plans]
+    return [watch(jitter.edit(lab.scenario(plan)), laws, lab.frames(plan), solver="reduced") for plan in lab.plans]
 
 
 def _lab(data: Dataset) -> Lab:

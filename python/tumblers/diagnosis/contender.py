@@ -37,7 +37,7 @@ class Contender:
     settled
         Whether it was fitted against the noise around itself, not around another.
     log_likelihood
-        ln of the likelihood at the best point, as evidence counts it.
+        What of ln Z the fit makes: minus half the objective there and ln det of its noise, over the dispersion.
     log_evidence
         ln Z, the prior included.
     probability

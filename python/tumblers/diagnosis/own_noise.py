@@ -33,9 +33,8 @@ __all__ = [
 IDLE_POINTS, POLISH_POINTS = 2, 6
 # What takes so much off the objective asks for another round.
 ENOUGH = 5.0
-# How many fits are held against their own noise, how many where that gains much, and how often it is measured after a
-# further fit at most.
-_SETTLED, _MOST_SETTLED, _ROUNDS = 2, 6, 2
+# How many fits are held against their own noise, and how often it is measured after a further fit at most.
+_SETTLED, _ROUNDS = 2, 2
 # What another may gain by its own noise, over the most that one has gained.
 _AS_MUCH = 1.5
 # What comes so near to the best is held against its own noise, so many at most.
@@ -75,10 +74,17 @@ def against_itself(fitter: Fitter, fit: Fit) -> Contender:
     return of_fit(fitter, fitter.again(fit))
 
 
-def settled(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase, count: int = _SETTLED) -> list[Contender]:
-    """Hold the best against their own noise and fit them on; the best first.
+def settled(
+    fitter: Fitter,
+    contenders: Sequence[Contender],
+    tell: OnPhase,
+    count: int = _SETTLED,
+    most: int = _SETTLED,
+) -> list[Contender]:
+    """Hold the best against their own noise and fit them on; the best first, and the leader always settled.
 
-    So many of them, and those that would lead if they gained about as much by it: near a threshold that is much.
+    The noise around one may be much more than that around another: near a threshold, what looks far behind may gain as
+    much by its own as the best did.
 
     Parameters
     ----------
@@ -89,33 +95,39 @@ def settled(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase, coun
     tell
         Is told the phase, how much of it is done, and of how much.
     count
-        How many at least.
+        How many of the best are held so.
+    most
+        How many at most where others would lead if they gained about as much by it.
     """
     made = likeliest_first(contenders)
-    gain, leading = 0.0, inf
-    for k, contender in enumerate(made[:_MOST_SETTLED]):
-        if k >= count and contender.total - _AS_MUCH * gain >= leading:
+    gain, done = 0.0, 0
+    while (k := next((k for k, contender in enumerate(made) if not contender.settled), None)) is not None:
+        leading = min((contender.total for contender in made if contender.settled), default=inf)
+        if k > 0 and (done >= most or (k >= count and made[k].total - _AS_MUCH * gain >= leading)):
             break
-        if contender.settled:
-            leading = min(leading, contender.total)
-            continue
-        tell("another look at the best", min(k, count), count)
-        assert contender.fit is not None
-        best = against_itself(fitter, contender.fit)
-        for _ in range(_ROUNDS):
-            assert best.fit is not None
-            fit = fitter.fit(best.fit.hypothesis, best.point, evaluations=POLISH_POINTS)
-            other = against_itself(fitter, fit) if fit.cost < best.cost - ENOUGH else best
-            if other.total >= best.total:
-                break
-            best = other
+        tell("another look at the best", min(done, most), most)
+        before, made[k] = made[k].total, _settled(fitter, made[k])
+        gain = max(gain, before - made[k].total)
+        made = likeliest_first(made)
+        done += 1
+    return made
+
+
+def _settled(fitter: Fitter, contender: Contender) -> Contender:
+    """Hold a fit against its own noise, and fit it on as long as that helps."""
+    assert contender.fit is not None
+    best = against_itself(fitter, contender.fit)
+    for _ in range(_ROUNDS):
         assert best.fit is not None
-        # The derivatives where it is, against its own noise.
-        fitter.take_likeliest_noise(best.effects)
-        here = fitter.fit(best.fit.hypothesis, best.point, evaluations=1)
-        made[k] = replace(of_fit(fitter, here), settled=True)
-        gain, leading = max(gain, contender.total - made[k].total), min(leading, made[k].total)
-    return likeliest_first(made)
+        fit = fitter.fit(best.fit.hypothesis, best.point, evaluations=POLISH_POINTS)
+        other = against_itself(fitter, fit) if fit.cost < best.cost - ENOUGH else best
+        if other.total >= best.total:
+            break
+        best = other
+    assert best.fit is not None
+    # The derivatives where it is, against its own noise.
+    fitter.take_likeliest_noise(best.effects)
+    return replace(of_fit(fitter, fitter.fit(best.fit.hypothesis, best.point, evaluations=1)), settled=True)
 
 
 def each_by_itself(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase) -> list[Contender]:

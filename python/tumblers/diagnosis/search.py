@@ -44,8 +44,8 @@ _WORTH = 9.0
 # Trial points of a fit: of an effect that leads after the scan (so many do), and of another (where nothing is better
 # than neutral only the derivatives are taken).
 _LEADING, _LEADING_POINTS, _POINTS = 6, 6, 4
-# Effects that are held against their own noise before one counts as the best.
-_OWN = 4
+# Effects that are held against their own noise before one counts as best, and how many where that gains much.
+_OWN, _MOST_OWN = 4, 6
 # A gap is left where the mean square stays above this against the likeliest noise.
 _WANTING = 1.1
 # Hypotheses that are fitted again from the beginnings of the trials; and of those whose points over the range follow
@@ -96,12 +96,12 @@ class Search:
         if not singles or singles[0].total > nominal.total - self.worth:
             return [nominal, *singles]
         nominal, singles = self._resolved(nominal, singles)
-        singles = settled(self.fitter, singles, self.tell, _OWN)
-        if singles[0].total > nominal.total - self.worth:
-            return self._concluded(nominal, singles)
-        singles = self._all_shaken(singles)
+        singles = settled(self.fitter, singles, self.tell, _OWN, _MOST_OWN)
         # What is weak is found where it starts: only a strong cause has minima of its own, far away.
         strong = not is_right(self.comparison, nominal.residual)
+        if not strong and singles[0].total > nominal.total - self.worth:
+            return self._concluded(nominal, singles)
+        singles = self._all_shaken(singles)
         if strong and self._is_wanting(singles[0]):
             singles = settled(self.fitter, self._far(singles), self.tell)
         if singles[0].total > nominal.total - self.worth:
@@ -124,7 +124,7 @@ class Search:
         while self.comparison.halve_steps_for(made[0].effects):
             self.fitter.take_likeliest_noise(())
             nominal = of_nominal(self.fitter)
-            made = settled(self.fitter, again(self.fitter, made), self.tell, _OWN)
+            made = settled(self.fitter, again(self.fitter, made), self.tell, _OWN, _MOST_OWN)
         return nominal, made
 
     def _far(self, singles: Sequence[Contender]) -> list[Contender]:

@@ -43,7 +43,7 @@ def judge(comparison: Comparison, attribution: Attribution, foretold: bool) -> t
 def ties(comparison: Comparison, attribution: Attribution, chosen: Contender) -> dict[str, tuple[str, ...]]:
     """Return for each effect of the chosen set those that these trials cannot tell apart from it.
 
-    Parsimony may prefer one to another that has more parameters; that no trial speaks against the other is a tie still.
+    Parsimony may prefer one to another that has more parameters: where likelihood alone does not, that is a tie still.
 
     Parameters
     ----------
