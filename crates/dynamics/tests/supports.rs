@@ -24,6 +24,7 @@ fn a_body_that_is_pulled_more_than_pushed_turns_about_the_far_edge() {
         rocked += u32::from(matches!((before, solution.support), (Support::Face(_), Support::Line(..))));
         before = solution.support;
     });
+    // 173 times, and 15 iterations at most; to try every support takes thousands.
     assert!(rocked > 50, "it rocked {rocked} times");
-    assert!(most < 200, "a step took {most} iterations");
+    assert!(most < 50, "a step took {most} iterations");
 }

@@ -35,7 +35,8 @@ IDLE_POINTS, POLISH_POINTS = 2, 6
 ENOUGH = 5.0
 # How many fits are held against their own noise, and how often it is measured after a further fit at most.
 _SETTLED, _ROUNDS = 2, 2
-# What another may gain by its own noise, over the most that one has gained.
+# What another may gain by its own noise, over the most that one has gained: at one threshold, in a dataset whose truth
+# was known, five effects gained 640 to 790.
 _AS_MUCH = 1.5
 # What comes so near to the best is held against its own noise, so many at most.
 _NEAR, _MOST_NEAR = 300.0, 6
