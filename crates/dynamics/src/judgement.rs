@@ -8,6 +8,7 @@
 //!
 //! These are the inequalities of the unreduced problem's complementarity pairs.
 
+use crate::Vec3;
 use crate::contact::{ContactPoints, downward};
 use crate::reduced::Evaluation;
 use crate::step::Step;
@@ -65,7 +66,7 @@ fn flat_face(body: &Body, support: Support, at: &Evaluation, slack: f64) -> Opti
 }
 
 /// The neighbour that the body turns onto, if the ECP has left `support` by more than `slack`: the one that the ECP has moved
-/// to, or the farthest from it where adhesion pulls more than the plane pushes, `N < 0`. From the edge that the ECP has passed
+/// to, or the opposite one where adhesion pulls more than the plane pushes, `N < 0`. From the edge that the ECP has passed
 /// a push is too weak to hold the other side down, but a pull is too weak to hold this side down.
 fn left_support(body: &Body, support: Support, at: &Evaluation, slack: f64) -> Option<Support> {
     match support {
@@ -85,19 +86,36 @@ fn left_support(body: &Body, support: Support, at: &Evaluation, slack: f64) -> O
         }
         Support::Face(face) => {
             let point = at.rotation.transpose() * at.arm;
-            let (mut passed, mut farthest) = ((slack, None), (slack, None));
+            let mut passed = (slack, None);
             for (surface, next) in &body.faces()[face as usize].neighbours {
                 let outside = body.surfaces()[*surface as usize].value(&point);
                 if outside > passed.0 {
                     passed = (outside, Some(*next));
                 }
-                if outside < farthest.0 {
-                    farthest = (outside, Some(*next));
-                }
             }
-            if at.normal < 0.0 { passed.1.and(farthest.1) } else { passed.1 }
+            let next = passed.1?;
+            // A disc has one boundary, all round.
+            Some(if at.normal < 0.0 { opposite(body, face, &point).unwrap_or(next) } else { next })
         }
     }
+}
+
+/// The boundary by which the ray from `point`, outside a face, through the face's middle leaves it; a curved one is taken as
+/// it lies beside the middle.
+fn opposite(body: &Body, face: u16, point: &Vec3) -> Option<Support> {
+    let face = &body.faces()[face as usize];
+    let middle = face.area_centroid;
+    let way = middle - point;
+    let (mut first, mut boundary) = (f64::INFINITY, None);
+    for (surface, next) in &face.neighbours {
+        let surface = &body.surfaces()[*surface as usize];
+        let rate = surface.gradient(&middle).dot(&way);
+        let share = -surface.value(&middle) / rate;
+        if rate > 0.0 && share < first {
+            (first, boundary) = (share, Some(*next));
+        }
+    }
+    boundary
 }
 
 /// The generator that is deepest below the plane.
@@ -121,5 +139,23 @@ fn extended(body: &Body, support: Support, generator: u16, at: &Evaluation) -> S
                 if keep == generator { Support::Point(generator) } else { line(keep, generator) }
             }
         },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Mat3;
+    use geometry::Draft;
+
+    #[test]
+    fn the_opposite_edge_is_the_one_that_the_ray_through_the_middle_leaves_by() {
+        // Four times as long as wide: from beside a long edge, not in its middle, an end is the farthest.
+        let body = Body::cuboid(4e-3, 1e-3, 1e-3, Draft::NONE).unwrap();
+        let beside = Vec3::new(0.8e-3, 0.6e-3, -0.5e-3);
+        let face = body.faces().iter().position(|face| (face.area_centroid.z + 0.5e-3).abs() < 1e-9).unwrap();
+        let Some(Support::Line(g, h)) = opposite(&body, face as u16, &beside) else { panic!("no edge") };
+        let ends = ContactPoints::new(&body, Support::Line(g, h), &Mat3::identity()).y;
+        assert!(ends[..2].iter().all(|end| (end.x + 0.5e-3).abs() < 1e-9), "{ends:?}");
     }
 }
