@@ -10,13 +10,17 @@ import pytest
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
+from tumblers.diagnosis import diagnose
 from tumblers.diagnosis.estimate import _SIDE, _ends, _gradients, _whole_way
+from tumblers.diagnosis.floor import TOLERANCES
 from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.simulator import Simulator
+from tumblers.diagnosis.tolerated import least_deviation
 from tumblers.effects.magnetization_misalignment import MagnetizationMisalignment
+from tumblers.effects.magnetization_strength import MagnetizationStrength
 from tumblers.effects.size_error import SizeError
 
-from .lab import plan
+from .lab import measure, plan
 
 # Of a step of 1e-6: half of it times the second derivative, at most 57°/0.25² here.
 OF_A_STEP = 1e-3
@@ -120,3 +124,23 @@ def test_an_interval_ends_where_the_objective_stays_up(rise: Callable[[float], f
     side = (0, 1.0)
     found = _ends(lambda ways: [rise(way) for _, way in ways], {side: 20.0})
     assert found[side] == pytest.approx(end, abs=off + 1e-12)
+
+
+def test_a_factor_is_known_no_better_than_the_nominal_number_that_it_multiplies() -> None:
+    scenario = Simulator(plan()).nominal(0)
+    both = hypot(TOLERANCES["magnetization"], TOLERANCES["field strength"])
+    assert least_deviation("magnetization_strength", "factor", 0.8, [scenario]) == pytest.approx(0.8 * both)
+    assert least_deviation("friction_coefficient", "factor", 0.5, [scenario]) == pytest.approx(
+        0.5 * TOLERANCES["friction coefficient"]
+    )
+    force = scenario.substrate.electrostatic_force_N
+    assert least_deviation("electrostatic_force", "force_N", 1e-7, [scenario]) == pytest.approx(
+        TOLERANCES["electrostatic force"] * force
+    )
+    assert least_deviation("substrate_tilt", "slope_x_deg", 2.0, [scenario]) == 0.0
+    # Exact data of a whole trial: what they leave open is what the lab does not know of its magnet and its coils.
+    found = diagnose(measure(plan(), (MagnetizationStrength(factor=0.8),)), effects=["magnetization_strength"])
+    (effect,) = found.effects
+    factor = effect.parameters["factor"]
+    assert factor.low <= factor.estimate - 1.6 * 0.8 * both
+    assert factor.high >= factor.estimate + 1.6 * 0.8 * both

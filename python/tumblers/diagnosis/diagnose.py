@@ -310,7 +310,8 @@ def _assumptions(comparison: Comparison, attribution: Attribution) -> tuple[str,
         f"Before anything is fitted, {100.0 * PRIOR[0]:g} % for no gap, {100.0 * PRIOR[1]:g} % for one effect, "
         f"{100.0 * PRIOR[2]:g} % for two; no more than two are tried.",
         f"A second effect must add a factor e^{SECOND:g} of evidence: one in another form than ours looks like two.",
-        "Evidence is Laplace's approximation; intervals are 90 % likelihood ratios along the ridge of the posterior.",
+        "Evidence is Laplace's approximation; intervals are 90 % likelihood ratios along the ridge of the posterior, "
+        "and what is a nominal number's factor is known no better than the number.",
     ]
     tracks = [trial.track for trial in comparison.dataset.trials if trial.track is not None]
     observed = [reader.observed for reader in comparison.readers]

@@ -7,6 +7,9 @@ than 1.645² above the least that was met on the way: the 90 % interval of a lik
 objective is rough, and what is beyond a small rise may be as good as before it; where it rises by a step, at a
 threshold, the way to the step is halved. All of what may move the path counts as noise here, not only what made the
 fit likeliest: that was chosen for leaving least, and would say too little of what is not known.
+
+What says the same as a nominal number's being off is known no better than that number (`least_deviation`). A nuisance
+has it only where differences are linear in it; where motion is chaotic the fit moves the parameter instead.
 """
 
 from __future__ import annotations
@@ -21,6 +24,7 @@ from .contender import Contender
 from .fit import Fit, Fitter
 from .hypothesis import Hypothesis
 from .result import Interval
+from .tolerated import least_deviation
 
 __all__ = ["intervals"]
 
@@ -82,6 +86,7 @@ def _around(fitter: Fitter, dispersion: float, fit: Fit) -> dict[tuple[str, str]
 
     reach = _ends(rises, {side: _whole_way(hypothesis, fit.point, side[1] * ridges[side[0]]) for side in sides})
     out = {}
+    scenarios = [fitter.comparison.simulator.nominal(i) for i in fitter.trials]
     estimates = hypothesis.values(fit.point)
     parameters = [parameter for kind in hypothesis.kinds for parameter in kind.parameters]
     for j, (key, parameter) in enumerate(zip(hypothesis.keys, parameters, strict=True)):
@@ -92,7 +97,8 @@ def _around(fitter: Fitter, dispersion: float, fit: Fit) -> dict[tuple[str, str]
         moved = [hypothesis.values(at(side, reach[side]))[j] - estimates[j] for side in sides if side[0] == j]
         if parameter.turns:
             moved = [(change + _HALF_TURN) % (2.0 * _HALF_TURN) - _HALF_TURN for change in moved]
-        ends = [float(np.clip(estimates[j] + end, low, high)) for end in (min([0.0, *moved]), max([0.0, *moved]))]
+        least = _SIDE * least_deviation(*key, float(estimates[j]), scenarios)
+        ends = [float(np.clip(estimates[j] + end, low, high)) for end in (min([-least, *moved]), max([least, *moved]))]
         width = (ends[1] - ends[0]) / max(high - low, 1e-300)
         out[key] = Interval(float(estimates[j]), ends[0], ends[1], bool(width < _IDENTIFIED))
     return out

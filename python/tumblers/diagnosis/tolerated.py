@@ -1,14 +1,15 @@
-"""Whether effects say no more than that a nominal number is off within its tolerance: that is no gap."""
+"""Effects that say what a nominal number's being off says too: within its tolerance that is no gap."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from math import hypot
 
 from ..effects.base import Effect
 from ..scenario import Scenario
 from .floor import TOLERANCES
 
-__all__ = ["is_tolerated"]
+__all__ = ["is_tolerated", "least_deviation"]
 
 # So many standard deviations may a nominal number be off.
 _MOST = 3.0
@@ -20,6 +21,8 @@ _FACTORS: Mapping[str, Mapping[str, str]] = {
     "size_error": {"length_factor": "length", "height_factor": "height"},
 }
 _FORCE = "electrostatic_force"
+# Of a torque m × B nobody knows whether the moment or the field is off.
+_SAME: Mapping[str, tuple[str, ...]] = {"magnetization": ("field strength",)}
 
 
 def is_tolerated(effects: Sequence[Effect], scenarios: Sequence[Scenario]) -> bool:
@@ -39,9 +42,30 @@ def _within(effect: Effect, scenarios: Sequence[Scenario]) -> bool:
     values = dict(zip((p.key for p in effect.parameters), effect.vector(), strict=True))
     if effect.name == _FORCE:
         (added,) = values.values()
-        nominal = min(scenario.substrate.electrostatic_force_N for scenario in scenarios)
-        return abs(added) <= _MOST * TOLERANCES["electrostatic force"] * nominal
+        return abs(added) <= _MOST * _force_deviation(scenarios)
     numbers = _FACTORS.get(effect.name)
     return numbers is not None and all(
         abs(values[key] - 1.0) <= _MOST * TOLERANCES[number] for key, number in numbers.items()
     )
+
+
+def least_deviation(name: str, key: str, value: float, scenarios: Sequence[Scenario]) -> float:
+    """Return the standard deviation that a parameter has at least: a factor's is that of its number.
+
+    Parameters
+    ----------
+    name, key
+        Of the effect and of its parameter.
+    value
+        The parameter.
+    scenarios
+        The nominal ones of all trials.
+    """
+    if name == _FORCE:
+        return _force_deviation(scenarios)
+    number = _FACTORS.get(name, {}).get(key)
+    return 0.0 if number is None else value * hypot(*(TOLERANCES[n] for n in (number, *_SAME.get(number, ()))))
+
+
+def _force_deviation(scenarios: Sequence[Scenario]) -> float:
+    return TOLERANCES["electrostatic force"] * min(s.substrate.electrostatic_force_N for s in scenarios)
