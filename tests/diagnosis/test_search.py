@@ -18,6 +18,7 @@ from tumblers.diagnosis.own_noise import against_itself, against_the_best, besid
 from tumblers.diagnosis.pairs import firsts
 from tumblers.diagnosis.search import Search
 from tumblers.diagnosis.simulator import STEPS_S, Job, Simulator
+from tumblers.diagnosis.step_credit import step_credit
 from tumblers.diagnosis.thresholds import CLEAR
 from tumblers.effects.base import Effect
 from tumblers.effects.catalogue import CATALOGUE
@@ -115,16 +116,30 @@ def test_what_asks_for_a_shorter_step_gets_no_credit_for_it() -> None:
     hypothesis = Hypothesis.of(ContactCompliance, [comparison.simulator.nominal(0)])
     little = (np.array(ContactCompliance.to_fit([1e-6])) - hypothesis.neutral) / hypothesis.scale
 
-    def ahead() -> float:
-        fitter.take_likeliest_noise(())
-        nominal = of_nominal(fitter)
-        return nominal.total - against_itself(fitter, fitter.fit(hypothesis, little, evaluations=1)).total
+    fitter.take_likeliest_noise(())
+    nominal = of_nominal(fitter)
+    floors = comparison.floors
+    held = against_itself(fitter, fitter.fit(hypothesis, little, evaluations=1))
+    # About 60.
+    assert nominal.total - (held.cost + held.log_determinant) > 1.0
+    assert abs(nominal.total - held.total) < 1.0
+    # What it was compared with is not touched by that.
+    assert comparison.simulator.step_s[0] == STEPS_S[0]
+    fitter.take_likeliest_noise(())
+    assert all(a.log_determinant == b.log_determinant for a, b in zip(comparison.floors, floors, strict=True))
 
-    before = ahead()
-    assert comparison.halve_steps_for(hypothesis.effects(little))
+
+def test_a_model_that_is_wrong_in_any_step_gives_no_credit() -> None:
+    dataset = measure(plan(PLANS[2:3]), (FrictionCoefficient(factor=0.5), MagnetizationStrength(factor=0.5)))
+    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
+    assert step_credit(fitter, (ContactCompliance(compliance_m_per_N=0.1),)) == 0.0
+
+
+def test_steps_that_a_hypothesis_asks_for_are_imposed_on_the_nominal_model() -> None:
+    dataset = measure(plan(LYING))
+    comparison = Comparison(dataset, Simulator(dataset))
+    assert comparison.halve_steps_for((ContactCompliance(compliance_m_per_N=0.1),))
     assert comparison.simulator.step_s[0] <= ContactCompliance.longest_step_s * (1.0 + 1e-9)
-    # About 60 before and a thousandth after.
-    assert abs(ahead()) < 1.0 < before
 
 
 def test_the_leader_is_held_in_a_step_that_is_short_enough_for_it() -> None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -74,6 +75,8 @@ class Comparison:
         By trial.
     nuisances
         The fit of the sensor's nuisances.
+    step_credits
+        What is known of `step_credit`, by the steps of all trials, s.
     """
 
     def __init__(self, dataset: Dataset, simulator: Simulator) -> None:
@@ -93,10 +96,14 @@ class Comparison:
 
     def _start(self) -> None:
         """Take the nominal model's paths and noise."""
-        self.nominal_paths = self.simulator.run([Job(i) for i in range(len(self.readers))])
-        self._known = {}
+        self.step_credits: dict[tuple[float, ...], float] = {}
+        self._run_nominal()
         self.take_noise_of(())
         self._nominal_log_determinant = sum(floor.log_determinant for floor in self.floors)
+
+    def _run_nominal(self) -> None:
+        self.nominal_paths = self.simulator.run([Job(i) for i in range(len(self.readers))])
+        self._known = {}
 
     def halve_steps_for(self, effects: tuple[Effect, ...]) -> bool:
         """Halve the steps that are too long for a hypothesis, and return whether there were any.
@@ -112,6 +119,27 @@ class Comparison:
             return False
         self._start()
         return True
+
+    @contextmanager
+    def kept(self) -> Iterator[None]:
+        """Leave steps, noise and nominal paths at the end as they were; what is found in between compares."""
+        steps, known, floors, paths = list(self.simulator.step_s), self._known, self.floors, self.nominal_paths
+        try:
+            yield
+        finally:
+            self.simulator.step_s = steps
+            self._known, self.floors, self.nominal_paths = known, floors, paths
+
+    def take_steps_of(self, effects: tuple[Effect, ...]) -> None:
+        """Run the nominal model in the steps that a hypothesis is run in.
+
+        Parameters
+        ----------
+        effects
+            The hypothesis.
+        """
+        self.simulator.shorten_steps_for(effects)
+        self._run_nominal()
 
     def take_noise_of(self, effects: tuple[Effect, ...], shares: Sequence[float] | None = None) -> None:
         """Let the noise be what moves the paths around a hypothesis; residuals compare by `log_determinant` too.

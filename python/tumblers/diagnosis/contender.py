@@ -34,6 +34,8 @@ class Contender:
         the best (`against_the_best`).
     log_determinant
         ln det of that noise's covariance over that of the nominal model's.
+    step_credit
+        What the shorter steps that it is run in take off the objective by themselves (`step_credit`).
     settled
         Whether it was fitted against the noise around itself, not around another.
     log_likelihood
@@ -49,6 +51,7 @@ class Contender:
     residual: Residual
     cost: float
     log_determinant: float = 0.0
+    step_credit: float = 0.0
     settled: bool = False
     log_likelihood: float = 0.0
     log_evidence: float = 0.0
@@ -62,7 +65,7 @@ class Contender:
     @property
     def total(self) -> float:
         """-2 ln likelihood, but for what is the same for all: what contenders are compared by."""
-        return self.cost + self.log_determinant
+        return self.cost + self.log_determinant + self.step_credit
 
     @property
     def effects(self) -> tuple[Effect, ...]:

@@ -15,6 +15,7 @@ from math import inf
 from ..progress import OnPhase
 from .contender import Contender, likeliest_first, of_fit, of_nominal
 from .fit import Fit, Fitter
+from .step_credit import step_credit
 from .thresholds import CLEAR
 
 __all__ = [
@@ -71,8 +72,9 @@ def against_itself(fitter: Fitter, fit: Fit) -> Contender:
     fit
         Found against any noise.
     """
-    fitter.take_likeliest_noise(fit.hypothesis.effects(fit.point))
-    return of_fit(fitter, fitter.again(fit))
+    effects = fit.hypothesis.effects(fit.point)
+    fitter.take_likeliest_noise(effects)
+    return replace(of_fit(fitter, fitter.again(fit)), step_credit=step_credit(fitter, effects))
 
 
 def settled(
@@ -127,8 +129,7 @@ def _settled(fitter: Fitter, contender: Contender) -> Contender:
         best = other
     assert best.fit is not None
     # The derivatives where it is, against its own noise.
-    fitter.take_likeliest_noise(best.effects)
-    return replace(of_fit(fitter, fitter.fit(best.fit.hypothesis, best.point, evaluations=1)), settled=True)
+    return _by_itself(fitter, best, evaluations=1)
 
 
 def each_by_itself(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase) -> list[Contender]:
@@ -152,17 +153,17 @@ def each_by_itself(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhas
         if not waiting:
             break
         tell("each against its own noise", min(count, _MOST_NEAR), _MOST_NEAR)
-        made[waiting[0]] = _by_itself(fitter, made[waiting[0]])
+        made[waiting[0]] = _by_itself(fitter, made[waiting[0]], IDLE_POINTS)
         made = likeliest_first(made)
         count += 1
     return made
 
 
-def _by_itself(fitter: Fitter, contender: Contender) -> Contender:
+def _by_itself(fitter: Fitter, contender: Contender, evaluations: int) -> Contender:
     assert contender.fit is not None
     fitter.take_likeliest_noise(contender.effects)
-    fit = fitter.fit(contender.fit.hypothesis, contender.point, evaluations=IDLE_POINTS)
-    return replace(of_fit(fitter, fit), settled=True)
+    fit = fitter.fit(contender.fit.hypothesis, contender.point, evaluations=evaluations)
+    return replace(of_fit(fitter, fit), step_credit=step_credit(fitter, contender.effects), settled=True)
 
 
 def against_the_best(fitter: Fitter, nominal: Contender, contenders: Sequence[Contender]) -> list[Contender]:
@@ -212,4 +213,5 @@ def beside(fitter: Fitter, contender: Contender, around: Contender) -> Contender
     fitter.take_likeliest_noise(contender.effects, around.effects)
     if contender.fit is None:
         return of_nominal(fitter)
-    return replace(of_fit(fitter, fitter.again(contender.fit)), settled=contender.settled)
+    held = of_fit(fitter, fitter.again(contender.fit))
+    return replace(held, step_credit=contender.step_credit, settled=contender.settled)

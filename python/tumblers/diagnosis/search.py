@@ -120,6 +120,10 @@ class Search:
     def _resolved(self, nominal: Contender, contenders: Sequence[Contender]) -> tuple[Contender, list[Contender]]:
         """Return the nominal model and the others in steps that are short enough for the leader."""
         made = list(contenders)
+        right = is_right(self.comparison, nominal.residual)
+        if right and not self.comparison.simulator.resolves(made[0].effects):
+            # One that leads by its steps alone is no reason to take them for all.
+            made = settled(self.fitter, made, self.tell, _OWN, _MOST_OWN)
         # What moves so in one step and not in half of it is no motion of the model, and speaks for nothing.
         while self.comparison.halve_steps_for(made[0].effects):
             self.fitter.take_likeliest_noise(())

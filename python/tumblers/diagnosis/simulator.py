@@ -164,9 +164,28 @@ class Simulator:
         effects
             A hypothesis. Against a nominal model in longer steps, the smaller numerical error would speak for it.
         """
-        before = list(self.step_s)
-        self.step_s = [step / self._finer(i, effects) for i, step in enumerate(before)]
+        before, self.step_s = self.step_s, self.steps_of(effects)
         return self.step_s != before
+
+    def steps_of(self, effects: Sequence[Effect]) -> list[float]:
+        """Return the steps that effects are run in, s, by trial.
+
+        Parameters
+        ----------
+        effects
+            A hypothesis.
+        """
+        return [step / self._finer(i, effects) for i, step in enumerate(self.step_s)]
+
+    def resolves(self, effects: Sequence[Effect]) -> bool:
+        """Return whether effects are run in the steps of the nominal model.
+
+        Parameters
+        ----------
+        effects
+            A hypothesis.
+        """
+        return self.steps_of(effects) == self.step_s
 
     def _finer(self, trial: int, effects: Sequence[Effect]) -> int:
         """Return by how much a trial's step is too long for effects."""
