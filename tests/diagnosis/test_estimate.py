@@ -134,11 +134,11 @@ def test_a_factor_is_known_no_better_than_the_nominal_number_that_it_multiplies(
         0.5 * TOLERANCES["friction coefficient"]
     )
     force = scenario.substrate.electrostatic_force_N
-    assert least_deviation("electrostatic_force", "force_N", 1e-7, [scenario]) == pytest.approx(
+    assert least_deviation("electrostatic_force", "added_force_N", 1e-7, [scenario]) == pytest.approx(
         TOLERANCES["electrostatic force"] * force
     )
     assert least_deviation("substrate_tilt", "slope_x_deg", 2.0, [scenario]) == 0.0
-    # Exact data of a whole trial: what they leave open is what the lab does not know of its magnet and its coils.
+    # What five trials leave open is less than what the lab does not know of its magnet and its coils.
     found = diagnose(measure(plan(), (MagnetizationStrength(factor=0.8),)), effects=["magnetization_strength"])
     (effect,) = found.effects
     factor = effect.parameters["factor"]

@@ -105,41 +105,55 @@ def test_steps_are_halved_where_a_hypothesis_asks_for_it() -> None:
     assert_allclose(before.position_m[-1], after.position_m[-1], atol=1e-9)
 
 
-def test_what_asks_for_a_shorter_step_gets_no_credit_for_it() -> None:
-    # So little compliance moves nothing; against the error of a longer step around the nominal model it would lead.
-    dataset = measure(plan(PLANS[2:3]), divisor=16)
-    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
-    comparison = fitter.comparison
-    # A step that nothing asked to be shorter.
+def _coarse_lab(*truth: Effect) -> Fitter:
+    """Return what was measured in a fine step, before a nominal model in a step that nothing asked to be shorter."""
+    dataset = measure(plan(PLANS[2:3]), truth, divisor=16)
+    comparison = Comparison(dataset, Simulator(dataset))
     comparison.simulator.step_s[0] = STEPS_S[0]
     comparison._start()
+    return Fitter(comparison)
+
+
+def test_what_asks_for_a_shorter_step_gets_no_credit_for_it() -> None:
+    # So little compliance moves nothing; against the error of a longer step around the nominal model it would lead.
+    fitter = _coarse_lab()
+    comparison = fitter.comparison
     hypothesis = Hypothesis.of(ContactCompliance, [comparison.simulator.nominal(0)])
     little = (np.array(ContactCompliance.to_fit([1e-6])) - hypothesis.neutral) / hypothesis.scale
-
     fitter.take_likeliest_noise(())
-    nominal = of_nominal(fitter)
-    floors = comparison.floors
+    nominal, floors = of_nominal(fitter), comparison.floors
+    assert step_credit(fitter, hypothesis.effects(little)) > 1.0
+    assert comparison.floors is floors, "what the credit was measured in is not left behind"
+    assert of_nominal(fitter).total == nominal.total
+    assert comparison.simulator.step_s[0] == STEPS_S[0]
     held = against_itself(fitter, fitter.fit(hypothesis, little, evaluations=1))
     # About 60.
     assert nominal.total - (held.cost + held.log_determinant) > 1.0
     assert abs(nominal.total - held.total) < 1.0
-    # What it was compared with is not touched by that.
-    assert comparison.simulator.step_s[0] == STEPS_S[0]
-    fitter.take_likeliest_noise(())
-    assert all(a.log_determinant == b.log_determinant for a, b in zip(comparison.floors, floors, strict=True))
+    # In the same step there is none to give.
+    assert comparison.halve_steps_for(hypothesis.effects(little))
+    again = against_itself(fitter, fitter.fit(hypothesis, little, evaluations=1))
+    assert again.step_credit == 0.0
+    assert abs(of_nominal(fitter).cost - again.cost) < 1.0
+
+
+@pytest.mark.parametrize("compliance_m_per_N", [0.0, 0.3])
+def test_a_shorter_step_is_imposed_only_for_what_leads_without_its_credit(compliance_m_per_N: float) -> None:
+    fitter = _coarse_lab(ContactCompliance(compliance_m_per_N=compliance_m_per_N))
+    best = min(Search(fitter, [ContactCompliance], quiet, 0).contenders(), key=lambda c: c.total)
+    simulator = fitter.comparison.simulator
+    if compliance_m_per_N:
+        assert best.names == ("contact_compliance",)
+        assert simulator.resolves(best.effects)
+    else:
+        assert simulator.step_s[0] == STEPS_S[0]
 
 
 def test_a_model_that_is_wrong_in_any_step_gives_no_credit() -> None:
-    dataset = measure(plan(PLANS[2:3]), (FrictionCoefficient(factor=0.5), MagnetizationStrength(factor=0.5)))
-    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
-    assert step_credit(fitter, (ContactCompliance(compliance_m_per_N=0.1),)) == 0.0
-
-
-def test_steps_that_a_hypothesis_asks_for_are_imposed_on_the_nominal_model() -> None:
-    dataset = measure(plan(LYING))
-    comparison = Comparison(dataset, Simulator(dataset))
-    assert comparison.halve_steps_for((ContactCompliance(compliance_m_per_N=0.1),))
-    assert comparison.simulator.step_s[0] <= ContactCompliance.longest_step_s * (1.0 + 1e-9)
+    fitter = _coarse_lab(FrictionCoefficient(factor=0.5), MagnetizationStrength(factor=0.5))
+    little = (ContactCompliance(compliance_m_per_N=1e-6),)
+    assert not fitter.comparison.simulator.resolves(little)
+    assert step_credit(fitter, little) == 0.0
 
 
 def test_the_leader_is_held_in_a_step_that_is_short_enough_for_it() -> None:

@@ -94,14 +94,14 @@ fn left_support(body: &Body, support: Support, at: &Evaluation, slack: f64) -> O
                 }
             }
             let next = passed.1?;
-            // A disc has one boundary, all round.
+            // Where the ray meets no boundary, there is none but the one that was passed.
             Some(if at.normal < 0.0 { opposite(body, face, &point).unwrap_or(next) } else { next })
         }
     }
 }
 
-/// The boundary by which the ray from `point`, outside a face, through the face's middle leaves it; a curved one is taken as
-/// it lies beside the middle.
+/// The boundary by which the ray from `point`, outside a face, through the face's middle leaves it. The middle is that of its
+/// area, which lies inside whatever pulls; a curved boundary is taken as it lies beside the middle.
 fn opposite(body: &Body, face: u16, point: &Vec3) -> Option<Support> {
     let face = &body.faces()[face as usize];
     let middle = face.area_centroid;

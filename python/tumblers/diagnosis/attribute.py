@@ -99,6 +99,9 @@ def attribute(
     right = is_right(comparison, of_nominal(fitter).residual)
     contenders = search.contenders()
     ranked, dispersion = _ranked(contenders, comparison, search.names)
+    while not comparison.simulator.resolves(ranked[0].effects):
+        contenders = search.in_steps_of(ranked[0], contenders)
+        ranked, dispersion = _ranked(contenders, comparison, search.names)
     if right:
         ranked = _with_tolerated(ranked, comparison)
     # From here on all are seen against one noise: that around the best, as much of it as the best needs.

@@ -121,8 +121,8 @@ class Comparison:
         return True
 
     @contextmanager
-    def kept(self) -> Iterator[None]:
-        """Leave steps, noise and nominal paths at the end as they were; what is found in between compares."""
+    def restored(self) -> Iterator[None]:
+        """Restore steps, noise and nominal paths at the end; objectives inside compare with those outside."""
         steps, known, floors, paths = list(self.simulator.step_s), self._known, self.floors, self.nominal_paths
         try:
             yield

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ..effects.base import Effect
 from .comparison import Residual
 from .fit import Fit, Fitter
+from .step_credit import step_credit
 
 __all__ = ["Contender", "likeliest", "likeliest_first", "of_fit", "of_nominal"]
 
@@ -35,7 +36,7 @@ class Contender:
     log_determinant
         ln det of that noise's covariance over that of the nominal model's.
     step_credit
-        What the shorter steps that it is run in take off the objective by themselves (`step_credit`).
+        What the shorter steps that it is run in take off the objective by themselves: it is added again.
     settled
         Whether it was fitted against the noise around itself, not around another.
     log_likelihood
@@ -75,7 +76,9 @@ class Contender:
 
 def of_fit(fitter: Fitter, fit: Fit) -> Contender:
     """Return the contender of a fit against the noise of the moment."""
-    return Contender(fit.hypothesis.names, fit, fit.residual, fit.cost, fitter.comparison.log_determinant)
+    log_determinant = fitter.comparison.log_determinant
+    credit = step_credit(fitter, fit.hypothesis.effects(fit.point))
+    return Contender(fit.hypothesis.names, fit, fit.residual, fit.cost, log_determinant, credit)
 
 
 def of_nominal(fitter: Fitter) -> Contender:

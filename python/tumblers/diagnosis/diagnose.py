@@ -311,7 +311,7 @@ def _assumptions(comparison: Comparison, attribution: Attribution) -> tuple[str,
         f"{100.0 * PRIOR[2]:g} % for two; no more than two are tried.",
         f"A second effect must add a factor e^{SECOND:g} of evidence: one in another form than ours looks like two.",
         "Evidence is Laplace's approximation; intervals are 90 % likelihood ratios along the ridge of the posterior, "
-        "and what is a nominal number's factor is known no better than the number.",
+        "and what multiplies a nominal number, or adds to a nominal force, is known no better than that.",
     ]
     tracks = [trial.track for trial in comparison.dataset.trials if trial.track is not None]
     observed = [reader.observed for reader in comparison.readers]

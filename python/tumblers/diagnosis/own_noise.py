@@ -15,7 +15,6 @@ from math import inf
 from ..progress import OnPhase
 from .contender import Contender, likeliest_first, of_fit, of_nominal
 from .fit import Fit, Fitter
-from .step_credit import step_credit
 from .thresholds import CLEAR
 
 __all__ = [
@@ -72,9 +71,8 @@ def against_itself(fitter: Fitter, fit: Fit) -> Contender:
     fit
         Found against any noise.
     """
-    effects = fit.hypothesis.effects(fit.point)
-    fitter.take_likeliest_noise(effects)
-    return replace(of_fit(fitter, fitter.again(fit)), step_credit=step_credit(fitter, effects))
+    fitter.take_likeliest_noise(fit.hypothesis.effects(fit.point))
+    return of_fit(fitter, fitter.again(fit))
 
 
 def settled(
@@ -163,7 +161,7 @@ def _by_itself(fitter: Fitter, contender: Contender, evaluations: int) -> Conten
     assert contender.fit is not None
     fitter.take_likeliest_noise(contender.effects)
     fit = fitter.fit(contender.fit.hypothesis, contender.point, evaluations=evaluations)
-    return replace(of_fit(fitter, fit), step_credit=step_credit(fitter, contender.effects), settled=True)
+    return replace(of_fit(fitter, fit), settled=True)
 
 
 def against_the_best(fitter: Fitter, nominal: Contender, contenders: Sequence[Contender]) -> list[Contender]:
@@ -213,5 +211,4 @@ def beside(fitter: Fitter, contender: Contender, around: Contender) -> Contender
     fitter.take_likeliest_noise(contender.effects, around.effects)
     if contender.fit is None:
         return of_nominal(fitter)
-    held = of_fit(fitter, fitter.again(contender.fit))
-    return replace(held, step_credit=contender.step_credit, settled=contender.settled)
+    return replace(of_fit(fitter, fitter.again(contender.fit)), settled=contender.settled)

@@ -17,6 +17,7 @@ from .contender import Contender, likeliest_first, of_fit
 from .fit import Fitter
 from .hypothesis import Hypothesis
 from .own_noise import against_itself
+from .step_credit import step_credit
 from .thresholds import CLEAR
 
 __all__ = ["Pairs", "firsts", "single_of"]
@@ -82,9 +83,12 @@ class Pairs:
         joined = [first.fit.hypothesis + other for other in others]
         bases = [np.concatenate([first.point, np.zeros(len(other.neutral))]) for other in others]
         scans = self.fitter.scan(joined, bases, first.residual, first.fit.jacobian)
-        costs = [points[0][0] for points in scans]
+        costs = [
+            points[0][0] + step_credit(self.fitter, h.effects(points[0][1]))
+            for h, points in zip(joined, scans, strict=True)
+        ]
         for k in np.argsort(costs, kind="stable")[:_SECONDS]:
-            if costs[k] < first.cost - CLEAR:
+            if costs[k] < first.cost + first.step_credit - CLEAR:
                 self._keep(joined[k], scans[k][0][1])
 
     def join(self, singles: Sequence[Contender]) -> None:

@@ -112,18 +112,32 @@ class Search:
             singles = [self._nested(pairs[0], singles[0]), *singles[1:]]
         return self._concluded(nominal, likeliest_first([*singles, *pairs]))
 
+    def in_steps_of(self, leader: Contender, contenders: Sequence[Contender]) -> list[Contender]:
+        """Return the nominal model and the others again, in steps that are short enough for one of them.
+
+        Parameters
+        ----------
+        leader
+            One of them.
+        contenders
+            What `contenders` returned.
+        """
+        nominal = next(c for c in contenders if not c.names)
+        others = [c for c in contenders if c.names and c.names != leader.names]
+        return self._concluded(nominal, [leader, *others])
+
     def _concluded(self, nominal: Contender, contenders: Sequence[Contender]) -> list[Contender]:
         """Return the nominal model and all others, each against the noise that counts."""
-        nominal, made = self._resolved(nominal, contenders)
-        return against_the_best(self.fitter, nominal, each_by_itself(self.fitter, made, self.tell))
+        while True:
+            nominal, made = self._resolved(nominal, contenders)
+            contenders = each_by_itself(self.fitter, made, self.tell)
+            # Against its own noise another may lead, which asks for shorter steps still.
+            if self.comparison.simulator.resolves(contenders[0].effects):
+                return against_the_best(self.fitter, nominal, contenders)
 
     def _resolved(self, nominal: Contender, contenders: Sequence[Contender]) -> tuple[Contender, list[Contender]]:
         """Return the nominal model and the others in steps that are short enough for the leader."""
         made = list(contenders)
-        right = is_right(self.comparison, nominal.residual)
-        if right and not self.comparison.simulator.resolves(made[0].effects):
-            # One that leads by its steps alone is no reason to take them for all.
-            made = settled(self.fitter, made, self.tell, _OWN, _MOST_OWN)
         # What moves so in one step and not in half of it is no motion of the model, and speaks for nothing.
         while self.comparison.halve_steps_for(made[0].effects):
             self.fitter.take_likeliest_noise(())

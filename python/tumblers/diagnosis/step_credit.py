@@ -1,15 +1,16 @@
 """`step_credit`: what the shorter steps of a hypothesis take off the objective by themselves.
 
-What moves fast is run in shorter steps than the nominal model. Where that is right but for its numerical error, the
-smaller error of these steps would speak for the hypothesis: it is what they take off the nominal model's own objective,
-each against the noise around it. Where the nominal model is wrong, its objective in one step or another says nothing of
-a hypothesis that is not; then the steps are imposed on all before anything is concluded (`Search`).
+What moves fast is run in shorter steps than the nominal model. Where the nominal model is right in these, the smaller
+numerical error would speak for the hypothesis: by as much as they take off the nominal model's own objective, in either
+step against the noise around it. Where it is wrong in them, its objective in one step or another says nothing of a
+hypothesis that is not wrong; whichever leads then imposes its steps on all others (`Search`).
 """
 
 from __future__ import annotations
 
+import numpy as np
+
 from ..effects.base import Effect
-from .contender import of_nominal
 from .fit import Fitter
 from .predictive import is_right
 
@@ -37,11 +38,15 @@ def step_credit(fitter: Fitter, effects: tuple[Effect, ...]) -> float:
 
 def _measured(fitter: Fitter, effects: tuple[Effect, ...]) -> float:
     comparison = fitter.comparison
-    with comparison.kept():
+
+    def total() -> float:
         fitter.take_likeliest_noise(())
-        before = of_nominal(fitter)
-        if not is_right(comparison, before.residual):
-            return 0.0
+        residual = comparison.residual(comparison.nominal_paths)
+        return fitter.cost(residual, np.zeros(1)) + comparison.log_determinant
+
+    with comparison.restored():
+        before = total()
         comparison.take_steps_of(effects)
-        fitter.take_likeliest_noise(())
-        return max(before.total - of_nominal(fitter).total, 0.0)
+        after = total()
+        right = is_right(comparison, comparison.residual(comparison.nominal_paths))
+    return max(before - after, 0.0) if right else 0.0

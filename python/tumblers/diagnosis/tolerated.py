@@ -45,7 +45,7 @@ def _within(effect: Effect, scenarios: Sequence[Scenario]) -> bool:
         return abs(added) <= _MOST * _force_deviation(scenarios)
     numbers = _FACTORS.get(effect.name)
     return numbers is not None and all(
-        abs(values[key] - 1.0) <= _MOST * TOLERANCES[number] for key, number in numbers.items()
+        abs(values[key] - 1.0) <= _MOST * _share(number) for key, number in numbers.items()
     )
 
 
@@ -64,7 +64,12 @@ def least_deviation(name: str, key: str, value: float, scenarios: Sequence[Scena
     if name == _FORCE:
         return _force_deviation(scenarios)
     number = _FACTORS.get(name, {}).get(key)
-    return 0.0 if number is None else value * hypot(*(TOLERANCES[n] for n in (number, *_SAME.get(number, ()))))
+    return 0.0 if number is None else value * _share(number)
+
+
+def _share(number: str) -> float:
+    """Return the standard deviation of a nominal number's factor, with that of others that nobody can tell from it."""
+    return hypot(*(TOLERANCES[n] for n in (number, *_SAME.get(number, ()))))
 
 
 def _force_deviation(scenarios: Sequence[Scenario]) -> float:
