@@ -6,7 +6,7 @@ from typing import Literal, TypeAlias, TypedDict, final, type_check_only
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Body", "Field", "Trial", "Walk", "rollouts", "simulate", "step", "sweep"]
+__all__ = ["Body", "Field", "Measured", "Trial", "Walk", "compare", "rollouts", "simulate", "step", "sweep"]
 
 _Numbers: TypeAlias = Sequence[float] | NDArray[np.float64]
 _Rows: TypeAlias = Sequence[Sequence[float]] | NDArray[np.float64]
@@ -225,6 +225,37 @@ def rollouts(
 ) -> list[_Rollout]:
     """Run trials in parallel (0: all threads) and return their poses as seen: of trial i every `every[i]`-th step, to
     the last that is finite."""
+
+# The interval of a path's rows, s, and these (n, 7), or None; the outcomes' scaled differences (k, 2).
+_Seen: TypeAlias = tuple[tuple[float, _Floats] | None, _Floats]
+
+@final
+class Measured:
+    """One trial's measurements with their noise.
+
+    By channel its name, times (k,), numbers (k, 1) or unit quaternions (k, 4), and the inverse Cholesky factor of its
+    covariance (k, k); the whitened change with each nominal number (n, shared), how many outcomes there are, and how
+    many numbers the whole track has.
+    """
+
+    def __new__(
+        cls, columns: list[tuple[str, _Floats, _Floats, _Floats]], tolerance: _Floats, outcomes: int, whole: int
+    ) -> Measured: ...
+    def whitened(self, run: _Seen, local: list[float], shared: list[float]) -> _Floats:
+        """Return the whitened differences for given nuisances, shape (n,)."""
+
+def compare(
+    trials: list[Measured],
+    runs: list[list[_Seen]],
+    local_bounds: list[list[float]],
+    local_sigmas: list[list[float]],
+    shared: tuple[list[float], list[float], list[float]],
+    train: list[bool],
+    held: list[float] | None = None,
+    fit: bool = True,
+    threads: int = 0,
+) -> list[tuple[_Floats, _Floats, list[_Floats | None]]]:
+    """Return for each run of all trials the nuisances at their best and the whitened differences."""
 
 @final
 class Walk:

@@ -5,6 +5,7 @@ mod convert;
 #[allow(non_snake_case)] // keywords carry their SI units, and T and Hz have capitals
 mod field;
 mod run;
+mod sensing;
 mod step;
 #[allow(non_snake_case)]
 mod trial;
@@ -21,6 +22,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(run::sweep, module)?)?;
     module.add_function(wrap_pyfunction!(run::rollouts, module)?)?;
     module.add_class::<walk::PyWalk>()?;
+    module.add_class::<sensing::PyMeasured>()?;
+    module.add_function(wrap_pyfunction!(sensing::compare, module)?)?;
     module.add_function(wrap_pyfunction!(step::step, module)?)?;
     Ok(())
 }

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -92,7 +93,8 @@ class Comparison:
         self._known: dict[tuple[Effect, ...], list[Sensitivity]]
         self._nominal_log_determinant: float
         self._start()
-        self.nuisances = NuisanceFit(dataset.sensor, self.readers)
+        self.nuisances = NuisanceFit(dataset.sensor, self.readers, simulator.threads)
+        self._whole: WeakKeyDictionary[Floor, Stretch] = WeakKeyDictionary()
 
     def _start(self) -> None:
         """Take the nominal model's paths and noise."""
@@ -228,14 +230,36 @@ class Comparison:
         tolerance
             How far the nominal numbers are off, shape (`SHARED`,); fitted if None.
         """
+        return self.residuals([paths], train, fit_nuisances, share, tolerance)[0]
+
+    def residuals(
+        self,
+        runs: Sequence[Sequence[Path | None]],
+        train: Sequence[int] | None = None,
+        fit_nuisances: bool = True,
+        share: float = 1.0,
+        tolerance: Floats | None = None,
+    ) -> list[Residual]:
+        """Return how wrong a model is in each of some runs of all trials: one native batch.
+
+        Parameters
+        ----------
+        runs
+            The model's paths, for each run one for each trial.
+        train, fit_nuisances, share, tolerance
+            As in `residual`.
+        """
         nuisances, stretches = self.nuisances, self._stretches(share)
-        local, shared = nuisances.perfect(tolerance)
-        if fit_nuisances:
-            tracked = [floor.tracked for floor in self.floors]
-            train = range(len(self.readers)) if train is None else train
-            local, shared = nuisances.fitted(paths, stretches, tracked, train, tolerance)
-        prior = np.concatenate([(local / nuisances.local_sigmas).ravel(), shared / nuisances.shared_sigmas])
-        return Residual(self._whitened(stretches, paths, local, shared), prior, local, shared[:2], shared[2:])
+        counted = range(len(self.readers)) if train is None else train
+        out = []
+        for local, shared, wrong in nuisances.fitted(runs, stretches, counted, tolerance, fit_nuisances):
+            prior = np.concatenate([(local / nuisances.local_sigmas).ravel(), shared / nuisances.shared_sigmas])
+            trials = tuple(
+                np.full(len(stretch.counts), _NOT_RUN) if values is None else values
+                for stretch, values in zip(stretches, wrong, strict=True)
+            )
+            out.append(Residual(trials, prior, local, shared[:2], shared[2:]))
+        return out
 
     def held(self, paths: Sequence[Path | None], nuisances: Residual) -> Residual:
         """Return how wrong a model is with all nuisances held where they were found against another noise.
@@ -256,10 +280,16 @@ class Comparison:
 
     def _stretches(self, share: float) -> list[Stretch]:
         """Return what of each trial is compared."""
-        each = zip(self.readers, self.floors, self.nuisances.local_bounds[:, 0], strict=True)
         if share >= 1.0:
-            return [Stretch.whole(reader, floor) for reader, floor, _ in each]
+            return [self._all_of(reader, floor) for reader, floor in zip(self.readers, self.floors, strict=True)]
+        each = zip(self.readers, self.floors, self.nuisances.local_bounds[:, 0], strict=True)
         return [Stretch.beginning(reader, floor, share * reader.duration_s - bound) for reader, floor, bound in each]
+
+    def _all_of(self, reader: Reader, floor: Floor) -> Stretch:
+        # A floor serves many comparisons, and its native half is made once.
+        if floor not in self._whole:
+            self._whole[floor] = Stretch.whole(reader, floor)
+        return self._whole[floor]
 
     def _whitened(
         self, stretches: Sequence[Stretch], paths: Sequence[Path | None], local: Floats, shared: Floats

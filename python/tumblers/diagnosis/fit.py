@@ -133,13 +133,13 @@ class Fitter:
             effects = hypothesis.effects(point)
             jobs += [Job(i, effects, share=share) for i in chosen]
         paths = self.comparison.simulator.run(jobs)
-        out = []
+        runs = []
         for k in range(len(points)):
             row: list[Path | None] = [None for _ in self.trials]
             for i, path in zip(chosen, paths[k * len(chosen) : (k + 1) * len(chosen)], strict=True):
                 row[i] = path
-            out.append(self.comparison.residual(row, chosen, share=share))
-        return out
+            runs.append(row)
+        return self.comparison.residuals(runs, chosen, share=share)
 
     def cost(self, residual: Residual, point: Floats, train: Sequence[int] | None = None) -> float:
         """Return the objective."""
@@ -286,8 +286,10 @@ class Fitter:
             for point in mine:
                 effects = h.effects(point)
                 jobs += [Job(i, effects) for i in self.trials]
-        paths = iter(self.comparison.simulator.run(jobs))
-        return [[self.comparison.residual([next(paths) for _ in self.trials]) for _ in mine] for mine in points]
+        paths = self.comparison.simulator.run(jobs)
+        count = len(self.trials)
+        found = iter(self.comparison.residuals([paths[k : k + count] for k in range(0, len(paths), count)]))
+        return [[next(found) for _ in mine] for mine in points]
 
     def fit(
         self,

@@ -45,13 +45,13 @@ class Path:
         place = np.clip(time_s / self.interval_s, 0.0, len(self.position_m) - 1.000001)
         row = place.astype(np.intp)
         share = (place - row)[:, None]
-        between = self._poses[row] * (1.0 - share) + self._poses[row + 1] * share
+        between = self.poses[row] * (1.0 - share) + self.poses[row + 1] * share
         position, turned = between[:, :3], between[:, 3:]
         return position, turned / np.sqrt(np.einsum("ij,ij->i", turned, turned))[:, None]
 
     @cached_property
-    def _poses(self) -> Floats:
-        # Side by side, so that a time is looked up once.
+    def poses(self) -> Floats:
+        """Positions and quaternions side by side, so that a time is looked up once, shape (n, 7)."""
         return np.hstack([self.position_m, self.orientation])
 
     def mode_at(self, time_s: Floats) -> NDArray[np.int8]:

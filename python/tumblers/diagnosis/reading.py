@@ -85,20 +85,6 @@ class Reader:
             return {}
         return self._wrong(*seen_by(path, self.observed.time_s, local, camera), 1)
 
-    def differences_by_clock(self, path: Path, clocks_s: Floats) -> dict[str, Floats]:
-        """Return `differences` for several clocks and otherwise perfect sensors, by channel, shape (k, n).
-
-        Parameters
-        ----------
-        path
-            The model's.
-        clocks_s
-            Offsets of the clock, s, shape (k,).
-        """
-        times = (self.observed.time_s + clocks_s[:, None]).ravel()
-        wrong = self._wrong(*seen_by(path, times, np.zeros(3), np.zeros(2)), len(clocks_s))
-        return {name: values.reshape(len(clocks_s), -1) for name, values in wrong.items()}
-
     def _wrong(self, position: Floats, orientation: Floats, times: int) -> dict[str, Floats]:
         """Return `measured - model` by channel, for poses (k n, 3) and (k n, 4) of k times all frames."""
         seen = self.observed
@@ -143,20 +129,33 @@ class Reader:
         camera
             Heading (rad) and scale, shape (2,).
         """
+        terms, by_scale = self.outcome_lines(path)
+        return {name: term + by_scale.get(name, 0.0) * float(camera[1]) for name, term in terms.items()}
+
+    def outcome_lines(self, path: Path) -> tuple[dict[str, float], dict[str, float]]:
+        """Return `outcome_terms` for a perfect camera, and their derivatives by its scale where they have one.
+
+        Parameters
+        ----------
+        path
+            The model's.
+        """
         outcome = self.observed.outcome
         terms: dict[str, float] = {}
+        by_scale: dict[str, float] = {}
         slides = {"slides": reached(self._slid_share(path), True, _SLIDES)} if self.observed.slid_m > 0.0 else {}
         if outcome is None:
-            return slides
+            return slides, by_scale
         said = self.read_outcomes(path)
         if outcome.mean_speed_m_per_s is not None and outcome.sigma_m_per_s is not None:
-            speed = said["mean_speed_m_per_s"] * (1.0 + camera[1])
+            speed = said["mean_speed_m_per_s"]
             terms["mean_speed"] = (outcome.mean_speed_m_per_s - speed) / outcome.sigma_m_per_s
+            by_scale["mean_speed"] = -speed / outcome.sigma_m_per_s
         if outcome.tilt_deg is not None and outcome.sigma_deg is not None:
             terms["tilt"] = (outcome.tilt_deg - said["tilt_deg"]) / outcome.sigma_deg
         if outcome.climbs is not None:
             terms["climbs"] = reached(said["climbed_share"], outcome.climbs)
-        return terms | slides
+        return terms | slides, by_scale
 
     def _slid_share(self, path: Path) -> float:
         """Return how far the model slides, as a share of how far the robot did."""

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import _core
 from .floor import Floor
 from .pose import Path
 from .reading import Reader
@@ -26,16 +28,19 @@ class Stretch:
         Of its frames alone. A beginning has no outcomes: they are of the whole.
     counts
         Which of the whole trial's numbers are compared, shape (n,).
+    tracked
+        How many of the whole trial's numbers were measured along its track.
     """
 
     reader: Reader
     floor: Floor
     counts: NDArray[np.bool_]
+    tracked: int
 
     @classmethod
     def whole(cls, reader: Reader, floor: Floor) -> Stretch:
         """Return all of a trial."""
-        return cls(reader, floor, np.ones(floor.size, dtype=bool))
+        return cls(reader, floor, np.ones(floor.size, dtype=bool), floor.tracked)
 
     @classmethod
     def beginning(cls, reader: Reader, floor: Floor, last_s: float) -> Stretch:
@@ -51,22 +56,36 @@ class Stretch:
             Time of the last frame at most, s.
         """
         frames = int(np.searchsorted(reader.observed.time_s, last_s, side="right"))
-        return cls(reader.beginning(frames), floor.beginning(frames), floor.counts(frames))
+        return cls(reader.beginning(frames), floor.beginning(frames), floor.counts(frames), floor.tracked)
 
-    def outcomes(self, path: Path, camera: Floats) -> Floats:
-        """Return the scaled differences of the outcomes that count, shape (k,).
+    @cached_property
+    def native(self) -> _core.Measured:
+        """The measurements with their noise, as the native module takes them."""
+        observed, columns = self.reader.observed, []
+        for name, kept in self.floor.valid.items():
+            kind, values = name, observed.values.get(name, np.empty(0))[:, None]
+            if name not in observed.values:
+                assert observed.orientation is not None
+                kind, values = f"turn_{name}", observed.orientation
+            columns.append((kind, observed.time_s[kept], values[kept], self.floor.whiten[name]))
+        return _core.Measured(columns, self.floor.tolerance, len(self.floor.outcome_scale), self.tracked)
+
+    def seen(self, path: Path | None) -> _core._Seen:
+        """Return a path, and the scaled differences of the outcomes: constant, and by the camera's scale, shape (k, 2).
 
         Parameters
         ----------
         path
-            The model's.
-        camera
-            Heading (rad) and scale, shape (2,).
+            The model's; None where it cannot be run.
         """
-        if not self.floor.outcome_scale:
-            return np.empty(0)
-        terms = self.reader.outcome_terms(path, camera)
-        return np.array([terms[name] * scale for name, scale in self.floor.outcome_scale.items()])
+        if path is None:
+            return None, np.empty((0, 2))
+        lines = np.empty((len(self.floor.outcome_scale), 2))
+        if len(lines):
+            terms, by_scale = self.reader.outcome_lines(path)
+            for line, (name, scale) in zip(lines, self.floor.outcome_scale.items(), strict=True):
+                line[:] = scale * terms[name], scale * by_scale.get(name, 0.0)
+        return (path.interval_s, path.poses), lines
 
     def whitened(self, path: Path, local: Floats, shared: Floats) -> Floats:
         """Return the whitened differences of the whole trial, 0 for what is not compared, shape (n,).
@@ -80,9 +99,16 @@ class Stretch:
         shared
             The camera's heading (rad) and scale, and how far the nominal numbers are off, shape (2 + `SHARED`,).
         """
-        differences = self.reader.differences(path, local, shared[:2])
-        parts = [self.floor.whiten[name] @ differences[name][kept] for name, kept in self.floor.valid.items()]
-        parts.append(self.outcomes(path, shared[:2]))
+        return self.over_all(self.native.whitened(self.seen(path), local.tolist(), shared.tolist()))
+
+    def over_all(self, compared: Floats) -> Floats:
+        """Return differences of what is compared among those of the whole trial, 0 for all others, shape (n,).
+
+        Parameters
+        ----------
+        compared
+            Shape (k,).
+        """
         values = np.zeros(len(self.counts))
-        values[self.counts] = np.concatenate(parts) - self.floor.tolerance @ shared[2:]
+        values[self.counts] = compared
         return values

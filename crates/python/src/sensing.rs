@@ -1,0 +1,147 @@
+//! What was measured in a trial, and its comparison with paths.
+
+use crate::convert::{choose, refused};
+use ::sensing::{Angle, Channel, Column, Measured, Path, Seen, Tolerances, Whiten};
+use numpy::ndarray::ArrayView2;
+use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use rayon::ThreadPoolBuilder;
+
+/// One channel: its name, times, measured numbers or quaternions, and the matrix that whitens it.
+type PyColumn<'py> = (String, PyReadonlyArray1<'py, f64>, PyReadonlyArray2<'py, f64>, PyReadonlyArray2<'py, f64>);
+/// One trial of a run: the interval of its rows and these, or none, and the outcomes' scaled differences.
+type PySeen<'py> = (Option<(f64, PyReadonlyArray2<'py, f64>)>, PyReadonlyArray2<'py, f64>);
+/// Clocks and origins, what all share, and the whitened differences.
+type PyCompared<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Vec<Option<Bound<'py, PyArray1<f64>>>>);
+
+/// What a name means for a channel whose measurements are given.
+#[derive(Clone, Copy)]
+enum Kind {
+    Place(usize),
+    Tilt,
+    Heading,
+    Turn(Angle),
+}
+
+const KINDS: [(&str, Kind); 8] = [
+    ("x", Kind::Place(0)),
+    ("y", Kind::Place(1)),
+    ("z", Kind::Place(2)),
+    ("tilt", Kind::Tilt),
+    ("heading", Kind::Heading),
+    ("turn_tilt", Kind::Turn(Angle::Tilt)),
+    ("turn_twist", Kind::Turn(Angle::Twist)),
+    ("turn_heading", Kind::Turn(Angle::Heading)),
+];
+
+#[pyclass(name = "Measured", module = "tumblers._core", frozen)]
+pub struct PyMeasured(Measured);
+
+#[pymethods]
+impl PyMeasured {
+    #[new]
+    fn new(
+        columns: Vec<PyColumn<'_>>,
+        tolerance: PyReadonlyArray2<'_, f64>,
+        outcomes: usize,
+        whole: usize,
+    ) -> PyResult<Self> {
+        let columns = columns
+            .iter()
+            .map(|(name, times, values, whiten)| {
+                let rows = whiten.as_array();
+                Ok(Column {
+                    channel: channel(choose("channel", name, &KINDS)?, values.as_array())?,
+                    times: times.as_array().to_vec(),
+                    whiten: Whiten::new(rows.outer_iter().map(|row| row.to_vec())).map_err(refused)?,
+                })
+            })
+            .collect::<PyResult<Vec<Column>>>()?;
+        let tolerance = tolerance.as_array();
+        let flat = tolerance.iter().copied().collect();
+        Measured::new(columns, flat, tolerance.ncols(), outcomes, whole).map(Self).map_err(refused)
+    }
+
+    fn whitened<'py>(
+        &self,
+        py: Python<'py>,
+        run: PySeen<'py>,
+        local: [f64; 3],
+        shared: Vec<f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let seen = seen(run.0.as_ref(), &run.1)?;
+        let path = seen.path.ok_or_else(|| refused("a trial that was not run has no differences"))?;
+        let wrong = self.0.whitened(&path, &seen.outcomes, &local, &shared).map_err(refused)?;
+        Ok(PyArray1::from_vec(py, wrong))
+    }
+}
+
+#[pyfunction]
+#[pyo3(signature = (trials, runs, local_bounds, local_sigmas, shared, train, held=None, fit=true, threads=0))]
+#[allow(clippy::too_many_arguments)] // keywords of one Python call
+pub fn compare<'py>(
+    py: Python<'py>,
+    trials: Vec<PyRef<'py, PyMeasured>>,
+    runs: Vec<Vec<PySeen<'py>>>,
+    local_bounds: Vec<[f64; 3]>,
+    local_sigmas: Vec<[f64; 3]>,
+    shared: (Vec<f64>, Vec<f64>, Vec<f64>),
+    train: Vec<bool>,
+    held: Option<Vec<f64>>,
+    fit: bool,
+    threads: usize,
+) -> PyResult<Vec<PyCompared<'py>>> {
+    let seen = runs
+        .iter()
+        .map(|run| run.iter().map(|(path, outcomes)| seen(path.as_ref(), outcomes)).collect())
+        .collect::<PyResult<Vec<Vec<Seen>>>>()?;
+    let measured: Vec<&Measured> = trials.iter().map(|trial| &trial.0).collect();
+    let (shared_low, shared_high, shared_sigmas) = shared;
+    let tolerances = Tolerances { local_bounds, local_sigmas, shared_low, shared_high, shared_sigmas };
+    let compared = py
+        .detach(|| {
+            let pool = ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| error.to_string())?;
+            pool.install(|| ::sensing::compare(&measured, &seen, &tolerances, &train, held.as_deref(), fit))
+                .map_err(|error| error.to_string())
+        })
+        .map_err(refused)?;
+    Ok(compared
+        .into_iter()
+        .map(|one| {
+            let array = |values: Vec<f64>| PyArray1::from_vec(py, values);
+            let wrong = one.wrong.into_iter().map(|values| values.map(array)).collect();
+            (PyArray1::from_slice(py, one.nuisances.local.as_flattened()), array(one.nuisances.shared), wrong)
+        })
+        .collect())
+}
+
+fn seen<'a>(
+    path: Option<&'a (f64, PyReadonlyArray2<'_, f64>)>,
+    outcomes: &PyReadonlyArray2<'_, f64>,
+) -> PyResult<Seen<'a>> {
+    let path = path
+        .map(|(interval, poses)| {
+            let (rows, rest) = poses.as_slice().map_err(refused)?.as_chunks::<7>();
+            if !rest.is_empty() {
+                return Err(refused("the poses of a path have not 7 numbers each"));
+            }
+            Path::new(*interval, rows).map_err(refused)
+        })
+        .transpose()?;
+    let outcomes = outcomes.as_array().outer_iter().map(|line| [line[0], line[1]]).collect();
+    Ok(Seen { path, outcomes })
+}
+
+fn channel(kind: Kind, values: ArrayView2<'_, f64>) -> PyResult<Channel> {
+    let width = if matches!(kind, Kind::Turn(_)) { 4 } else { 1 };
+    if values.ncols() != width {
+        return Err(refused(format!("a channel has {} numbers a frame, expected {width}", values.ncols())));
+    }
+    let numbers = || values.iter().copied().collect();
+    Ok(match kind {
+        Kind::Place(k) => Channel::Place(k, numbers()),
+        Kind::Tilt => Channel::Tilt(numbers()),
+        Kind::Heading => Channel::Heading(numbers()),
+        Kind::Turn(angle) => Channel::Turn(angle, values.outer_iter().map(|q| [q[0], q[1], q[2], q[3]]).collect()),
+    })
+}

@@ -1,0 +1,70 @@
+//! The channels of a track: what each reads from a pose, and how that moves with the sensor's nuisances.
+
+use crate::Pose;
+
+/// A component of the rotation from model to measurement, about a body axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Angle {
+    /// About `x`.
+    Tilt,
+    /// About `y`.
+    Twist,
+    /// About `z`.
+    Heading,
+}
+
+/// What was measured of a frame.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Channel {
+    /// A coordinate of the place, 0 to 2, m.
+    Place(usize, Vec<f64>),
+    /// The angle of the long axis above the substrate.
+    Tilt(Vec<f64>),
+    /// The angle of the long axis's projection from `+y` towards `-x`.
+    Heading(Vec<f64>),
+    /// A part of the whole orientation, unit quaternions `w, x, y, z`.
+    Turn(Angle, Vec<[f64; 4]>),
+}
+
+impl Channel {
+    /// Number of frames.
+    pub fn len(&self) -> usize {
+        match self {
+            Channel::Place(_, values) | Channel::Tilt(values) | Channel::Heading(values) => values.len(),
+            Channel::Turn(_, values) => values.len(),
+        }
+    }
+
+    /// Whether there is no frame.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// `measured - model` in a frame, for a pose as the sensor sees it.
+    #[inline]
+    pub fn wrong(&self, frame: usize, seen: &Pose) -> f64 {
+        match self {
+            Channel::Place(k, values) => values[frame] - seen.position[*k],
+            Channel::Tilt(values) => values[frame] - seen.tilt(),
+            Channel::Heading(values) => {
+                // The projection of an axis that stands upright points nowhere.
+                let (sin, cos) = (values[frame] - seen.heading()).sin_cos();
+                sin.atan2(cos) * seen.tilt().cos()
+            }
+            Channel::Turn(angle, values) => seen.turn_to(&values[frame])[*angle as usize],
+        }
+    }
+
+    /// The derivatives of `wrong` by the origin `(x, y)`, the camera's heading and its scale, for a pose of the model.
+    #[inline]
+    pub fn by_sensor(&self, pose: &Pose) -> [f64; 4] {
+        let [x, y, _] = pose.position;
+        match self {
+            Channel::Place(0, _) => [-1.0, 0.0, y, -x],
+            Channel::Place(1, _) => [0.0, -1.0, -x, -y],
+            Channel::Place(..) | Channel::Tilt(_) => [0.0; 4],
+            Channel::Heading(_) => [0.0, 0.0, -pose.tilt().cos(), 0.0],
+            Channel::Turn(angle, _) => [0.0, 0.0, -pose.upward()[*angle as usize], 0.0],
+        }
+    }
+}

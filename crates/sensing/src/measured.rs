@@ -1,0 +1,198 @@
+//! What was measured in one trial, in units of its noise.
+
+use crate::nuisances::{CAMERA, Camera};
+use crate::{Channel, Path, SensingError, Whiten};
+
+/// Between two looks at a path from which the derivative by the clock is taken, s.
+const TIME_STEP: f64 = 2e-4;
+/// Shares of a clock's tolerance that are tried first, and what a frame counts at most then, in sigmas.
+const CLOCKS: [f64; 7] = [-0.9, -0.6, -0.3, 0.0, 0.3, 0.6, 0.9];
+const OUTLIER: f64 = 6.0;
+
+/// One channel, in the frames in which it was not lost.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    /// What was measured.
+    pub channel: Channel,
+    /// When, by the sensor's clock, s.
+    pub times: Vec<f64>,
+    /// Its noise.
+    pub whiten: Whiten,
+}
+
+/// One trial's measurements that are compared, with their noise.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    columns: Vec<Column>,
+    /// Whitened change with each nominal number moved by its tolerance, row after row; numbers of a row.
+    tolerance: Vec<f64>,
+    shared: usize,
+    outcomes: usize,
+    whole: usize,
+    /// By column the whitened change with a shift of all its numbers, for the places that a shift of the origin moves.
+    shifts: Vec<Vec<f64>>,
+}
+
+/// Derivatives by the clock, the origin `(x, y)`, the camera's heading and scale, and the difference.
+pub type Row = [f64; 6];
+
+impl Measured {
+    /// Measurements of the columns' numbers, then of `outcomes` scaled ones.
+    ///
+    /// `tolerance` has `shared` numbers for each of all these, `whole` is how many numbers the whole track has, of which the
+    /// columns may be the beginning.
+    pub fn new(
+        columns: Vec<Column>,
+        tolerance: Vec<f64>,
+        shared: usize,
+        outcomes: usize,
+        whole: usize,
+    ) -> Result<Self, SensingError> {
+        for column in &columns {
+            let expected = column.channel.len();
+            for (what, found) in [("times", column.times.len()), ("a whitening matrix", column.whiten.count())] {
+                if found != expected {
+                    return Err(SensingError::Rows { what, found, expected });
+                }
+            }
+        }
+        let tracked: usize = columns.iter().map(|column| column.times.len()).sum();
+        let expected = (tracked + outcomes) * shared;
+        if tolerance.len() != expected {
+            return Err(SensingError::Rows { what: "tolerance", found: tolerance.len(), expected });
+        }
+        let shifts = columns.iter().map(shift).collect();
+        Ok(Self { columns, tolerance, shared, outcomes, whole, shifts })
+    }
+
+    /// How many numbers of a track are compared.
+    pub fn tracked(&self) -> usize {
+        self.columns.iter().map(|column| column.times.len()).sum()
+    }
+
+    /// How many outcomes are compared.
+    pub fn outcomes(&self) -> usize {
+        self.outcomes
+    }
+
+    /// How many nominal numbers may be off.
+    pub fn shared(&self) -> usize {
+        self.shared
+    }
+
+    /// How many numbers the whole track has.
+    pub fn whole(&self) -> usize {
+        self.whole
+    }
+
+    /// By number, its change with each nominal number.
+    pub fn tolerance(&self) -> impl Iterator<Item = &[f64]> {
+        self.tolerance.chunks_exact(self.shared.max(1))
+    }
+
+    /// The whitened differences: of the columns, then of the outcomes, `[constant, by scale]` each.
+    pub fn whitened(
+        &self,
+        path: &Path,
+        outcomes: &[[f64; 2]],
+        local: &[f64; 3],
+        shared: &[f64],
+    ) -> Result<Vec<f64>, SensingError> {
+        for (what, found, expected) in
+            [("outcomes", outcomes.len(), self.outcomes), ("what all trials share", shared.len(), self.shared + CAMERA)]
+        {
+            if found != expected {
+                return Err(SensingError::Rows { what, found, expected });
+            }
+        }
+        let camera = Camera::new(shared[0], shared[1]);
+        let mut rows: Vec<[f64; 1]> = Vec::with_capacity(self.tracked() + self.outcomes);
+        for column in &self.columns {
+            let wrong: Vec<[f64; 1]> = column
+                .times
+                .iter()
+                .enumerate()
+                .map(|(n, time)| {
+                    let seen = path.at(time + local[0]).through(&camera, [local[1], local[2]]);
+                    [column.channel.wrong(n, &seen)]
+                })
+                .collect();
+            column.whiten.apply(&wrong, &mut rows);
+        }
+        rows.extend(outcomes.iter().map(|line| [line[0] + line[1] * shared[1]]));
+        let off = &shared[CAMERA..];
+        Ok(rows.iter().zip(self.tolerance()).map(|(row, by)| row[0] - dot(by, off)).collect())
+    }
+
+    /// The whitened differences with their derivatives by the sensor's nuisances, the nominal numbers as they are.
+    pub fn linearised(&self, path: &Path, outcomes: &[[f64; 2]], local: &[f64; 3], camera: &Camera) -> Vec<Row> {
+        let mut rows = Vec::with_capacity(self.tracked() + self.outcomes);
+        let origin = [local[1], local[2]];
+        for column in &self.columns {
+            let raw: Vec<Row> = column
+                .times
+                .iter()
+                .enumerate()
+                .map(|(n, time)| {
+                    let pose = path.at(time + local[0]);
+                    let later = path.at(time + TIME_STEP + local[0]);
+                    let wrong = column.channel.wrong(n, &pose.through(camera, origin));
+                    let then = column.channel.wrong(n, &later.through(camera, origin));
+                    let [x, y, heading, scale] = column.channel.by_sensor(&pose);
+                    [(then - wrong) / TIME_STEP, x, y, heading, scale, wrong]
+                })
+                .collect();
+            column.whiten.apply(&raw, &mut rows);
+        }
+        rows.extend(outcomes.iter().map(|line| [0.0, 0.0, 0.0, 0.0, 0.0, line[0] + line[1] * camera.scale()]));
+        rows
+    }
+
+    /// The best of some offsets of the clock: a body that snaps over makes several minima.
+    pub fn clock(&self, path: &Path, bound: f64, sigmas: &[f64; 3]) -> f64 {
+        if bound == 0.0 || self.columns.iter().all(|column| column.times.is_empty()) {
+            return 0.0;
+        }
+        let clocks = CLOCKS.map(|share| share * bound);
+        let mut losses = clocks.map(|clock| (clock / sigmas[0]).powi(2));
+        let perfect = Camera::new(0.0, 0.0);
+        for (column, shift) in self.columns.iter().zip(&self.shifts) {
+            let wrong: Vec<[f64; 7]> = column
+                .times
+                .iter()
+                .enumerate()
+                .map(|(n, time)| {
+                    clocks.map(|clock| column.channel.wrong(n, &path.at(time + clock).through(&perfect, [0.0; 2])))
+                })
+                .collect();
+            let mut rows = Vec::with_capacity(wrong.len());
+            column.whiten.apply(&wrong, &mut rows);
+            // What a shift of the origin cannot explain.
+            let weight = dot(shift, shift) + sigmas[1].powi(-2);
+            let along: [f64; 7] =
+                std::array::from_fn(|k| shift.iter().zip(&rows).map(|(s, row)| s * row[k]).sum::<f64>() / weight);
+            for (n, row) in rows.iter().enumerate() {
+                let by = shift.get(n).copied().unwrap_or(0.0);
+                for k in 0..losses.len() {
+                    losses[k] += (row[k] - by * along[k]).powi(2).min(OUTLIER * OUTLIER);
+                }
+            }
+        }
+        let best = (1..losses.len()).fold(0, |best, k| if losses[k] < losses[best] { k } else { best });
+        clocks[best]
+    }
+}
+
+/// The whitened change of a column with a shift of all its numbers; none where the origin does not move it.
+fn shift(column: &Column) -> Vec<f64> {
+    if !matches!(column.channel, Channel::Place(0 | 1, _)) {
+        return Vec::new();
+    }
+    let mut rows = Vec::with_capacity(column.times.len());
+    column.whiten.apply(&vec![[1.0]; column.times.len()], &mut rows);
+    rows.into_iter().map(|[sum]| sum).collect()
+}
+
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

@@ -1,0 +1,39 @@
+//! Poses between the rows of a run.
+
+use crate::{Pose, SensingError};
+
+/// How near to the last row the last time is read, in rows.
+const LAST: f64 = 1e-6;
+
+/// The seen poses of one run at even times: place, then the unit quaternion `w, x, y, z`, of one sign along the path.
+#[derive(Debug, Clone, Copy)]
+pub struct Path<'a> {
+    interval: f64,
+    poses: &'a [[f64; 7]],
+}
+
+impl<'a> Path<'a> {
+    /// A path whose rows are `interval` apart.
+    pub fn new(interval: f64, poses: &'a [[f64; 7]]) -> Result<Self, SensingError> {
+        if poses.len() < 2 {
+            return Err(SensingError::Poses { found: poses.len() });
+        }
+        if interval.is_nan() || interval <= 0.0 {
+            return Err(SensingError::Interval { found: interval });
+        }
+        Ok(Self { interval, poses })
+    }
+
+    /// The pose at a time, the ends held.
+    #[inline]
+    pub fn at(&self, time: f64) -> Pose {
+        let place = (time / self.interval).clamp(0.0, self.poses.len() as f64 - 1.0 - LAST);
+        let row = place as usize;
+        let share = place - row as f64;
+        let (before, after) = (&self.poses[row], &self.poses[row + 1]);
+        let between: [f64; 7] = std::array::from_fn(|k| before[k] * (1.0 - share) + after[k] * share);
+        let [x, y, z, q @ ..] = between;
+        let norm = q.iter().map(|c| c * c).sum::<f64>().sqrt();
+        Pose { position: [x, y, z], orientation: q.map(|c| c / norm) }
+    }
+}

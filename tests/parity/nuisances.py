@@ -1,0 +1,121 @@
+"""The fit of the sensor's nuisances in plain NumPy, written from its equations: what the native one must agree with."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.loss import weight_of
+from tumblers.diagnosis.pose import Path
+
+Floats = NDArray[np.float64]
+
+# Shares of a clock's tolerance that are tried first, and what a frame counts at most then, in sigmas.
+CLOCKS, OUTLIER = (-0.9, -0.6, -0.3, 0.0, 0.3, 0.6, 0.9), 6.0
+ITERATIONS = 3
+
+
+@dataclass(frozen=True, eq=False)
+class PlainFit:
+    """The nuisances of one run of all trials, and how wrong it is with them.
+
+    Attributes
+    ----------
+    comparison
+        With the readers, floors and tolerances.
+    paths
+        By trial.
+    """
+
+    comparison: Comparison
+    paths: Sequence[Path | None]
+
+    def residual(self, train: Sequence[int], tolerance: Floats | None) -> tuple[list[Floats | None], Floats, Floats]:
+        """Return the whitened differences by trial, clocks and origins (trials, 3), and what all trials share."""
+        nuisances = self.comparison.nuisances
+        local, shared = np.zeros_like(nuisances.local_sigmas), np.zeros_like(nuisances.shared_sigmas)
+        if tolerance is not None:
+            shared[2:] = tolerance
+        local[:, 0] = [self._clock(i) for i in range(len(self.paths))]
+        for _ in range(ITERATIONS):
+            local, shared = self._improved(local, shared, train, held=tolerance is not None)
+        found = [None if path is None else self._whitened(i, local[i], shared) for i, path in enumerate(self.paths)]
+        return found, local, shared
+
+    def _outcomes(self, trial: int, camera: Floats) -> Floats:
+        path = self.paths[trial]
+        assert path is not None
+        terms = self.comparison.readers[trial].outcome_terms(path, camera)
+        return np.array([terms[name] * scale for name, scale in self.comparison.floors[trial].outcome_scale.items()])
+
+    def _whitened(self, trial: int, local: Floats, shared: Floats) -> Floats:
+        path, floor = self.paths[trial], self.comparison.floors[trial]
+        assert path is not None
+        wrong = self.comparison.readers[trial].differences(path, local, shared[:2])
+        parts = [floor.whiten[name] @ wrong[name][kept] for name, kept in floor.valid.items()]
+        return np.concatenate([*parts, self._outcomes(trial, shared[:2])]) - floor.tolerance @ shared[2:]
+
+    def _clock(self, trial: int) -> float:
+        reader, floor, path = self.comparison.readers[trial], self.comparison.floors[trial], self.paths[trial]
+        nuisances = self.comparison.nuisances
+        bound, sigmas = nuisances.local_bounds[trial, 0], nuisances.local_sigmas[trial]
+        if path is None or bound == 0.0 or not len(reader.observed.time_s):
+            return 0.0
+        losses = []
+        for clock in bound * np.array(CLOCKS):
+            loss = (clock / sigmas[0]) ** 2
+            wrong = reader.differences(path, np.array([clock, 0.0, 0.0]), np.zeros(2))
+            for name, kept in floor.valid.items():
+                values = floor.whiten[name] @ wrong[name][kept]
+                if name in ("x", "y"):
+                    # What a shift of the origin cannot explain.
+                    shift = floor.whiten[name].sum(axis=1)
+                    values = values - shift * (shift @ values) / (shift @ shift + sigmas[1] ** -2)
+                loss += float(np.sum(np.minimum(values**2, OUTLIER**2)))
+            losses.append(loss)
+        return float(bound * CLOCKS[int(np.argmin(losses))])
+
+    def _rows(self, trial: int, local: Floats, shared: Floats, held: bool) -> Floats:
+        """Return the derivatives by the trial's nuisances, by what all share, and the differences, shape (n, k)."""
+        path, floor = self.paths[trial], self.comparison.floors[trial]
+        assert path is not None
+        found = self.comparison.readers[trial].linearised(path, local, shared[:2])
+        table = np.concatenate(
+            [np.empty((0, 6)), *(floor.whiten[name] @ found[name][kept] for name, kept in floor.valid.items())]
+        )
+        outcomes = self._outcomes(trial, shared[:2])
+        table = np.vstack([table, np.column_stack([np.zeros((len(outcomes), 5)), outcomes])])
+        numbers = np.zeros_like(floor.tolerance) if held else -floor.tolerance
+        return np.column_stack([table[:, :5], numbers, table[:, 5] - floor.tolerance @ shared[2:]])
+
+    def _improved(self, local: Floats, shared: Floats, train: Sequence[int], held: bool) -> tuple[Floats, Floats]:
+        """Return a step of Gauss and Newton's method in all nuisances at once, those of each trial eliminated."""
+        nuisances = self.comparison.nuisances
+        normal, right = np.diag(nuisances.shared_sigmas**-2.0), -(nuisances.shared_sigmas**-2.0) * shared
+        if held:
+            right[2:] = 0.0
+        blocks = {}
+        for i, path in enumerate(self.paths):
+            if path is None:
+                continue
+            floor = self.comparison.floors[i]
+            rows = self._rows(i, local[i], shared, held)
+            products = weight_of(rows[: floor.tracked, -1], floor.tracked) * (rows.T @ rows)
+            precision = nuisances.local_sigmas[i] ** -2.0
+            inverse = np.linalg.inv(products[:3, :3] + np.diag(precision))
+            by_shared, own = products[:3, 3:-1], products[:3, -1] + precision * local[i]
+            blocks[i] = inverse, by_shared, own
+            if i in train:
+                normal += products[3:-1, 3:-1] - by_shared.T @ inverse @ by_shared
+                right -= products[3:-1, -1] - by_shared.T @ inverse @ own
+        change = np.linalg.solve(normal, right)
+        local = local.copy()
+        for i, (inverse, by_shared, own) in blocks.items():
+            most = nuisances.local_bounds[i]
+            local[i] = np.clip(local[i] - inverse @ (own + by_shared @ change), -most, most)
+        low, high = nuisances.shared_bounds
+        return local, np.clip(shared + change, low, high)
