@@ -1,12 +1,26 @@
 """The native core: SI units, radians, plain numbers and arrays; ``ValueError`` with one line for what is refused."""
 
 from collections.abc import Callable, Sequence
-from typing import Literal, TypeAlias, TypedDict, final, type_check_only
+from typing import Final, Literal, TypeAlias, TypedDict, final, type_check_only
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Body", "Field", "Measured", "Trial", "Walk", "compare", "rollouts", "simulate", "step", "sweep"]
+__all__ = [
+    "CLOCK_STEP_S",
+    "FAR",
+    "HUBER",
+    "Body",
+    "Field",
+    "Measured",
+    "Trial",
+    "Walk",
+    "compare",
+    "rollouts",
+    "simulate",
+    "step",
+    "sweep",
+]
 
 _Numbers: TypeAlias = Sequence[float] | NDArray[np.float64]
 _Rows: TypeAlias = Sequence[Sequence[float]] | NDArray[np.float64]
@@ -225,6 +239,12 @@ def rollouts(
 ) -> list[_Rollout]:
     """Run trials in parallel (0: all threads) and return their poses as seen: of trial i every `every[i]`-th step, to
     the last that is finite."""
+
+# Where a loss turns from square to linear, and a track's mean square from which it counts by its logarithm; between two
+# looks at a path from which a derivative by the clock is taken.
+HUBER: Final[float]
+FAR: Final[float]
+CLOCK_STEP_S: Final[float]
 
 # The interval of a path's rows, s, and these (n, 7), or None; the outcomes' scaled differences (k, 2).
 _Seen: TypeAlias = tuple[tuple[float, _Floats] | None, _Floats]

@@ -24,6 +24,9 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<walk::PyWalk>()?;
     module.add_class::<sensing::PyMeasured>()?;
     module.add_function(wrap_pyfunction!(sensing::compare, module)?)?;
+    module.add("HUBER", ::sensing::HUBER)?;
+    module.add("FAR", ::sensing::FAR)?;
+    module.add("CLOCK_STEP_S", ::sensing::CLOCK_STEP)?;
     module.add_function(wrap_pyfunction!(step::step, module)?)?;
     Ok(())
 }

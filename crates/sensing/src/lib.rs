@@ -19,7 +19,8 @@ mod whiten;
 
 pub use channel::{Angle, Channel};
 pub use error::SensingError;
-pub use measured::{Column, Measured};
+pub use loss::{FAR, HUBER};
+pub use measured::{CLOCK_STEP, Column, Measured};
 pub use nuisances::{Camera, Compared, Nuisances, Seen, Tolerances, compare};
 pub use path::Path;
 pub use pose::Pose;

@@ -4,10 +4,10 @@
 //! ρ(r) = r² up to |r| = 4, 8|r| - 16 beyond
 //! ```
 
-/// Where the loss turns from square to linear.
-const HUBER: f64 = 4.0;
+/// Where the loss turns from square to linear, in sigmas.
+pub const HUBER: f64 = 4.0;
 /// A track whose mean square is beyond this counts by its logarithm.
-const FAR: f64 = 3.0;
+pub const FAR: f64 = 3.0;
 
 /// `ρ(r)`.
 #[inline]

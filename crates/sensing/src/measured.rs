@@ -4,7 +4,7 @@ use crate::nuisances::{CAMERA, Camera};
 use crate::{Channel, Path, SensingError, Whiten};
 
 /// Between two looks at a path from which the derivative by the clock is taken, s.
-const TIME_STEP: f64 = 2e-4;
+pub const CLOCK_STEP: f64 = 2e-4;
 /// Shares of a clock's tolerance that are tried first, and what a frame counts at most then, in sigmas.
 const CLOCKS: [f64; 7] = [-0.9, -0.6, -0.3, 0.0, 0.3, 0.6, 0.9];
 const OUTLIER: f64 = 6.0;
@@ -135,11 +135,11 @@ impl Measured {
                 .enumerate()
                 .map(|(n, time)| {
                     let pose = path.at(time + local[0]);
-                    let later = path.at(time + TIME_STEP + local[0]);
+                    let later = path.at(time + CLOCK_STEP + local[0]);
                     let wrong = column.channel.wrong(n, &pose.through(camera, origin));
                     let then = column.channel.wrong(n, &later.through(camera, origin));
                     let [x, y, heading, scale] = column.channel.by_sensor(&pose);
-                    [(then - wrong) / TIME_STEP, x, y, heading, scale, wrong]
+                    [(then - wrong) / CLOCK_STEP, x, y, heading, scale, wrong]
                 })
                 .collect();
             column.whiten.apply(&raw, &mut rows);

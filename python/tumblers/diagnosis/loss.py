@@ -8,14 +8,16 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import _core
+
 __all__ = ["FAR", "HUBER", "huber", "robust_cost", "weight_of"]
 
 Floats = NDArray[np.float64]
 
 # Where the loss turns from square to linear, in sigmas.
-HUBER = 4.0
+HUBER = _core.HUBER
 # A trial's track whose mean square is beyond this counts by its logarithm.
-FAR = 3.0
+FAR = _core.FAR
 
 
 def huber(values: Floats) -> Floats:

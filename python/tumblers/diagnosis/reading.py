@@ -18,6 +18,7 @@ from math import degrees, log
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import _core
 from ..camera import Camera
 from ..field import RotatingField
 from ..scenario import Scenario
@@ -36,7 +37,6 @@ _BLUR = 0.05
 _LAPSE = 0.01
 # The robot has come to rest in this last share of a static trial; that many moments of it are averaged.
 _REST_SHARE, _REST_MOMENTS = 1.0 / 3.0, 50
-_TIME_STEP_S = 2e-4
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,7 +182,7 @@ class Reader:
         count = len(time)
         if not count:
             return {}
-        position, orientation = path.at(np.concatenate([time, time + _TIME_STEP_S]) + local[0])
+        position, orientation = path.at(np.concatenate([time, time + _core.CLOCK_STEP_S]) + local[0])
         wrong = self._wrong(*_through(position, orientation, local, camera), 2)
         position, orientation = position[:count], orientation[:count]
         turned = self.observed.orientation is not None
@@ -191,7 +191,7 @@ class Reader:
         for name, values in wrong.items():
             table = np.zeros((count, 6))
             table[:, 5] = values[:count]
-            table[:, 0] = (values[count:] - values[:count]) / _TIME_STEP_S
+            table[:, 0] = (values[count:] - values[:count]) / _core.CLOCK_STEP_S
             if name == "x":
                 table[:, 1], table[:, 3], table[:, 4] = -1.0, position[:, 1], -position[:, 0]
             elif name == "y":
