@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 __all__ = [
     "CLOCK_STEP_S",
+    "END_ROWS",
     "FAR",
     "HUBER",
     "Body",
@@ -241,10 +242,11 @@ def rollouts(
     the last that is finite."""
 
 # Where a loss turns from square to linear, and a track's mean square from which it counts by its logarithm; between two
-# looks at a path from which a derivative by the clock is taken.
+# looks at a path from which a derivative by the clock is taken; how near to its last row a path's end is read, rows.
 HUBER: Final[float]
 FAR: Final[float]
 CLOCK_STEP_S: Final[float]
+END_ROWS: Final[float]
 
 # The interval of a path's rows, s, and these (n, 7), or None; the outcomes' scaled differences (k, 2).
 _Seen: TypeAlias = tuple[tuple[float, _Floats] | None, _Floats]
@@ -262,7 +264,8 @@ class Measured:
         cls, columns: list[tuple[str, _Floats, _Floats, _Floats]], tolerance: _Floats, outcomes: int, whole: int
     ) -> Measured: ...
     def whitened(self, run: _Seen, local: list[float], shared: list[float]) -> _Floats:
-        """Return the whitened differences for given nuisances, shape (n,)."""
+        """Return the whitened differences, shape (n,), for a clock (s) and origin (m), shape (3,), and what all share:
+        the camera's heading (rad) and scale, then how far the nominal numbers are off."""
 
 def compare(
     trials: list[Measured],
@@ -275,7 +278,12 @@ def compare(
     fit: bool = True,
     threads: int = 0,
 ) -> list[tuple[_Floats, _Floats, list[_Floats | None]]]:
-    """Return for each run of all trials the nuisances at their best and the whitened differences."""
+    """Return for each run of all trials its clocks (s) and origins (m), shape (trials, 3), what all share, and by trial
+    the whitened differences.
+
+    Bounds and standard deviations of clock and origin are by trial, (trials, 3); of what all share, least, most and
+    standard deviations. What all share is fitted from the trials of `train`.
+    """
 
 @final
 class Walk:

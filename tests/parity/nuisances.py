@@ -1,4 +1,7 @@
-"""The fit of the sensor's nuisances in plain NumPy, written from its equations: what the native one must agree with."""
+"""The fit of the sensor's nuisances in plain NumPy, written from its equations: what the native one must agree with.
+
+What a channel reads, and its derivatives, are those of `reading.py`, which is plain NumPy already.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +14,7 @@ from numpy.typing import NDArray
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.loss import weight_of
 from tumblers.diagnosis.pose import Path
+from tumblers.diagnosis.stretch import Stretch
 
 Floats = NDArray[np.float64]
 
@@ -26,13 +30,16 @@ class PlainFit:
     Attributes
     ----------
     comparison
-        With the readers, floors and tolerances.
+        With the tolerances.
     paths
         By trial.
+    stretches
+        What of each trial is compared.
     """
 
     comparison: Comparison
     paths: Sequence[Path | None]
+    stretches: Sequence[Stretch]
 
     def residual(self, train: Sequence[int], tolerance: Floats | None) -> tuple[list[Floats | None], Floats, Floats]:
         """Return the whitened differences by trial, clocks and origins (trials, 3), and what all trials share."""
@@ -43,24 +50,33 @@ class PlainFit:
         local[:, 0] = [self._clock(i) for i in range(len(self.paths))]
         for _ in range(ITERATIONS):
             local, shared = self._improved(local, shared, train, held=tolerance is not None)
-        found = [None if path is None else self._whitened(i, local[i], shared) for i, path in enumerate(self.paths)]
-        return found, local, shared
+        return self.whitened(local, shared), local, shared
+
+    def whitened(self, local: Floats, shared: Floats) -> list[Floats | None]:
+        """Return the whitened differences by trial, 0 for what is not compared, None where there is no path."""
+        out: list[Floats | None] = []
+        for i, (path, stretch) in enumerate(zip(self.paths, self.stretches, strict=True)):
+            values = np.zeros(len(stretch.counts))
+            if path is not None:
+                values[stretch.counts] = self._whitened(i, local[i], shared)
+            out.append(None if path is None else values)
+        return out
 
     def _outcomes(self, trial: int, camera: Floats) -> Floats:
         path = self.paths[trial]
         assert path is not None
-        terms = self.comparison.readers[trial].outcome_terms(path, camera)
-        return np.array([terms[name] * scale for name, scale in self.comparison.floors[trial].outcome_scale.items()])
+        terms = self.stretches[trial].reader.outcome_terms(path, camera)
+        return np.array([terms[name] * scale for name, scale in self.stretches[trial].floor.outcome_scale.items()])
 
     def _whitened(self, trial: int, local: Floats, shared: Floats) -> Floats:
-        path, floor = self.paths[trial], self.comparison.floors[trial]
+        path, floor = self.paths[trial], self.stretches[trial].floor
         assert path is not None
-        wrong = self.comparison.readers[trial].differences(path, local, shared[:2])
+        wrong = self.stretches[trial].reader.differences(path, local, shared[:2])
         parts = [floor.whiten[name] @ wrong[name][kept] for name, kept in floor.valid.items()]
         return np.concatenate([*parts, self._outcomes(trial, shared[:2])]) - floor.tolerance @ shared[2:]
 
     def _clock(self, trial: int) -> float:
-        reader, floor, path = self.comparison.readers[trial], self.comparison.floors[trial], self.paths[trial]
+        reader, floor, path = self.stretches[trial].reader, self.stretches[trial].floor, self.paths[trial]
         nuisances = self.comparison.nuisances
         bound, sigmas = nuisances.local_bounds[trial, 0], nuisances.local_sigmas[trial]
         if path is None or bound == 0.0 or not len(reader.observed.time_s):
@@ -81,9 +97,9 @@ class PlainFit:
 
     def _rows(self, trial: int, local: Floats, shared: Floats, held: bool) -> Floats:
         """Return the derivatives by the trial's nuisances, by what all share, and the differences, shape (n, k)."""
-        path, floor = self.paths[trial], self.comparison.floors[trial]
+        path, floor = self.paths[trial], self.stretches[trial].floor
         assert path is not None
-        found = self.comparison.readers[trial].linearised(path, local, shared[:2])
+        found = self.stretches[trial].reader.linearised(path, local, shared[:2])
         table = np.concatenate(
             [np.empty((0, 6)), *(floor.whiten[name] @ found[name][kept] for name, kept in floor.valid.items())]
         )
@@ -102,9 +118,9 @@ class PlainFit:
         for i, path in enumerate(self.paths):
             if path is None:
                 continue
-            floor = self.comparison.floors[i]
+            floor, whole = self.stretches[i].floor, self.comparison.floors[i].tracked
             rows = self._rows(i, local[i], shared, held)
-            products = weight_of(rows[: floor.tracked, -1], floor.tracked) * (rows.T @ rows)
+            products = weight_of(rows[: floor.tracked, -1], whole) * (rows.T @ rows)
             precision = nuisances.local_sigmas[i] ** -2.0
             inverse = np.linalg.inv(products[:3, :3] + np.diag(precision))
             by_shared, own = products[:3, 3:-1], products[:3, -1] + precision * local[i]

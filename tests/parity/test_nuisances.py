@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from numpy.typing import NDArray
 
 from tests.diagnosis.lab import measure, plan, without
 from tumblers.dataset import Dataset, Outcome
-from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.comparison import Comparison, Residual
 from tumblers.diagnosis.floor import SHARED
 from tumblers.diagnosis.simulator import Job, Simulator
 from tumblers.effects import get
@@ -18,8 +22,12 @@ from tumblers.effects.base import Effect
 
 from .nuisances import PlainFit
 
+Floats = NDArray[np.float64]
+
 # Both solve the same small systems; what differs is the order of sums.
 AGREE = 1e-9
+# What a number counts, in sigmas, of a trial that could not be run.
+NOT_RUN = 30.0
 
 
 def off() -> Dataset:
@@ -37,6 +45,13 @@ def turned() -> Dataset:
     return measure(plan(), seed=9, heading_deg=-1.0, quaternions=True)
 
 
+def rigid() -> Dataset:
+    """Return trials of a sensor that is stated to be perfect, one of them without any frame left."""
+    dataset = without(off(), "f10", slice(None))
+    sure = {"time_offset_s": 0.0, "origin_tolerance_m": 0.0, "heading_tolerance_deg": 0.0, "scale_tolerance": 0.0}
+    return replace(dataset, sensor=replace(dataset.sensor, **sure))
+
+
 CASES: dict[str, tuple[Effect, ...]] = {
     "near": (),
     "far": (get("friction_coefficient").from_vector((0.3,)),),
@@ -44,25 +59,69 @@ CASES: dict[str, tuple[Effect, ...]] = {
 }
 
 
-@pytest.mark.parametrize("lab", [off, turned])
+def assert_same(native: Residual, plain: tuple[list[Floats | None], Floats, Floats]) -> None:
+    wrong, local, shared = plain
+    assert_allclose(native.local, local, rtol=AGREE, atol=AGREE * np.abs(local).max())
+    assert_allclose(native.camera, shared[:2], rtol=AGREE, atol=AGREE * np.abs(shared).max())
+    assert_allclose(native.tolerance, shared[2:], rtol=AGREE, atol=AGREE)
+    for found, expected in zip(native.trials, wrong, strict=True):
+        if expected is None:
+            assert np.all(found == NOT_RUN)
+        else:
+            assert_allclose(found, expected, rtol=AGREE, atol=AGREE * max(np.abs(expected).max(initial=0.0), 1.0))
+
+
+@pytest.mark.parametrize("lab", [off, turned, rigid])
 @pytest.mark.parametrize("case", CASES)
-@pytest.mark.parametrize("held", [False, True])
-def test_the_native_fit_of_nuisances_is_the_plain_one(lab, case: str, held: bool) -> None:
+@pytest.mark.parametrize(("held", "share"), [(False, 1.0), (True, 1.0), (False, 0.4)])
+def test_the_native_fit_of_nuisances_is_the_plain_one(
+    lab: Callable[[], Dataset], case: str, held: bool, share: float
+) -> None:
     comparison = Comparison(lab(), Simulator(lab(), 1))
     trials = range(len(comparison.readers))
     paths = comparison.simulator.run([Job(i, CASES[case]) for i in trials])
     tolerance = np.linspace(-0.5, 0.5, SHARED) if held else None
-    missing = [None, *paths[1:]]
-    for run, train in ((paths, trials), (paths, trials[:2]), (missing, trials)):
-        found = comparison.residual(run, train, tolerance=tolerance)
-        wrong, local, shared = PlainFit(comparison, run).residual(train, tolerance)
-        assert_allclose(found.local, local, rtol=AGREE, atol=AGREE * np.abs(local).max())
-        assert_allclose(found.camera, shared[:2], rtol=AGREE, atol=AGREE * np.abs(shared).max())
-        assert_allclose(found.tolerance, shared[2:], rtol=AGREE, atol=AGREE)
-        for native, plain in zip(found.trials, wrong, strict=True):
-            if plain is not None:
-                assert_allclose(native, plain, rtol=AGREE, atol=AGREE * max(np.abs(plain).max(initial=0.0), 1.0))
-        assert (wrong[0] is None) == (run[0] is None)
+    stretches = comparison._stretches(share)
+    for run, train in ((paths, trials), (paths, trials[:2]), ([None, *paths[1:]], trials)):
+        found = comparison.residual(run, train, share=share, tolerance=tolerance)
+        assert_same(found, PlainFit(comparison, run, stretches).residual(train, tolerance))
+
+
+def test_with_a_perfect_sensor_nothing_is_fitted() -> None:
+    comparison = Comparison(off(), Simulator(off(), 1))
+    paths = comparison.nominal_paths
+    plain = PlainFit(comparison, paths, comparison._stretches(1.0))
+    local, shared = np.zeros((len(paths), 3)), np.zeros(2 + SHARED)
+    found = comparison.residual(paths, fit_nuisances=False)
+    assert_same(found, (plain.whitened(local, shared), local, shared))
+
+
+def test_a_floor_that_is_not_used_any_more_is_forgotten() -> None:
+    comparison = Comparison(off(), Simulator(off(), 1))
+    comparison.residual(comparison.nominal_paths)
+    forgotten = [weakref.ref(floor) for floor in comparison.floors]
+    comparison.take_noise_of((), shares=[0.5] * len(comparison.readers))
+    gc.collect()
+    assert not any(floor() for floor in forgotten)
+
+
+def test_what_is_no_path_is_refused() -> None:
+    comparison = Comparison(off(), Simulator(off(), 1))
+    (stretch, *_), path = comparison._stretches(1.0), comparison.nominal_paths[0]
+    assert path is not None
+    (interval, poses), outcomes = stretch.seen(path)
+    local, shared = [0.0] * 3, [0.0] * (2 + SHARED)
+    for run, words in (
+        (((interval, poses[:1]), outcomes), "1 poses"),
+        (((0.0, poses), outcomes), "0 s apart"),
+        (((interval, poses[:, :6].copy()), outcomes), "6 numbers a row, expected 7"),
+        (((interval, np.asfortranarray(poses)), outcomes), "row after row"),
+        (((interval, poses), outcomes[:, :1].copy()), "1 numbers a row, expected 2"),
+        (((interval, poses), outcomes[:0]), "outcomes and shared have 0 and 11 numbers"),
+        ((None, outcomes), "not run"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            stretch.native.whitened(run, local, shared)
 
 
 def test_a_batch_is_its_runs_one_by_one_on_any_number_of_threads() -> None:

@@ -26,6 +26,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(sensing::compare, module)?)?;
     module.add("HUBER", ::sensing::HUBER)?;
     module.add("FAR", ::sensing::FAR)?;
+    module.add("END_ROWS", ::sensing::END_ROWS)?;
     module.add("CLOCK_STEP_S", ::sensing::CLOCK_STEP)?;
     module.add_function(wrap_pyfunction!(step::step, module)?)?;
     Ok(())

@@ -1,18 +1,18 @@
 //! What was measured in a trial, and its comparison with paths.
 
-use crate::convert::{choose, refused};
-use ::sensing::{Angle, Channel, Column, Measured, Path, Seen, Tolerances, Whiten};
-use numpy::ndarray::ArrayView2;
-use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2};
+use crate::convert::{choose, refused, table};
+use ::sensing::{Angle, Camera, Channel, Column, Measured, Path, Seen, Tolerances, Whiten};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use rayon::ThreadPoolBuilder;
+use std::thread::available_parallelism;
 
 /// One channel: its name, times, measured numbers or quaternions, and the matrix that whitens it.
 type PyColumn<'py> = (String, PyReadonlyArray1<'py, f64>, PyReadonlyArray2<'py, f64>, PyReadonlyArray2<'py, f64>);
 /// One trial of a run: the interval of its rows and these, or none, and the outcomes' scaled differences.
 type PySeen<'py> = (Option<(f64, PyReadonlyArray2<'py, f64>)>, PyReadonlyArray2<'py, f64>);
 /// Clocks and origins, what all share, and the whitened differences.
-type PyCompared<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Vec<Option<Bound<'py, PyArray1<f64>>>>);
+type PyCompared<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>, Vec<Option<Bound<'py, PyArray1<f64>>>>);
 
 /// What a name means for a channel whose measurements are given.
 #[derive(Clone, Copy)]
@@ -51,7 +51,7 @@ impl PyMeasured {
             .map(|(name, times, values, whiten)| {
                 let rows = whiten.as_array();
                 Ok(Column {
-                    channel: channel(choose("channel", name, &KINDS)?, values.as_array())?,
+                    channel: channel(choose("channel", name, &KINDS)?, values)?,
                     times: times.as_array().to_vec(),
                     whiten: Whiten::new(rows.outer_iter().map(|row| row.to_vec())).map_err(refused)?,
                 })
@@ -71,8 +71,16 @@ impl PyMeasured {
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let seen = seen(run.0.as_ref(), &run.1)?;
         let path = seen.path.ok_or_else(|| refused("a trial that was not run has no differences"))?;
-        let wrong = self.0.whitened(&path, &seen.outcomes, &local, &shared).map_err(refused)?;
-        Ok(PyArray1::from_vec(py, wrong))
+        let expected = self.0.shared() + Camera::COUNT;
+        if (seen.outcomes.len(), shared.len()) != (self.0.outcomes(), expected) {
+            return Err(refused(format!(
+                "outcomes and shared have {} and {} numbers, expected {} and {expected}",
+                seen.outcomes.len(),
+                shared.len(),
+                self.0.outcomes(),
+            )));
+        }
+        Ok(PyArray1::from_vec(py, self.0.whitened(&path, &seen.outcomes, &local, &shared)))
     }
 }
 
@@ -100,19 +108,22 @@ pub fn compare<'py>(
     let tolerances = Tolerances { local_bounds, local_sigmas, shared_low, shared_high, shared_sigmas };
     let compared = py
         .detach(|| {
+            // No more threads than there are paths to compare.
+            let most = (measured.len() * seen.len()).max(1);
+            let threads = if threads == 0 { available_parallelism().map_or(1, usize::from) } else { threads }.min(most);
             let pool = ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| error.to_string())?;
             pool.install(|| ::sensing::compare(&measured, &seen, &tolerances, &train, held.as_deref(), fit))
                 .map_err(|error| error.to_string())
         })
         .map_err(refused)?;
-    Ok(compared
+    compared
         .into_iter()
         .map(|one| {
             let array = |values: Vec<f64>| PyArray1::from_vec(py, values);
             let wrong = one.wrong.into_iter().map(|values| values.map(array)).collect();
-            (PyArray1::from_slice(py, one.nuisances.local.as_flattened()), array(one.nuisances.shared), wrong)
+            Ok((table(py, &one.nuisances.local)?, array(one.nuisances.shared), wrong))
         })
-        .collect())
+        .collect()
 }
 
 fn seen<'a>(
@@ -121,22 +132,19 @@ fn seen<'a>(
 ) -> PyResult<Seen<'a>> {
     let path = path
         .map(|(interval, poses)| {
-            let (rows, rest) = poses.as_slice().map_err(refused)?.as_chunks::<7>();
-            if !rest.is_empty() {
-                return Err(refused("the poses of a path have not 7 numbers each"));
-            }
-            Path::new(*interval, rows).map_err(refused)
+            width("a path's poses", poses, 7)?;
+            let rows = poses.as_array().to_slice().ok_or_else(|| refused("a path's poses are not row after row"))?;
+            Path::new(*interval, rows.as_chunks::<7>().0).map_err(refused)
         })
         .transpose()?;
+    width("outcomes", outcomes, 2)?;
     let outcomes = outcomes.as_array().outer_iter().map(|line| [line[0], line[1]]).collect();
     Ok(Seen { path, outcomes })
 }
 
-fn channel(kind: Kind, values: ArrayView2<'_, f64>) -> PyResult<Channel> {
-    let width = if matches!(kind, Kind::Turn(_)) { 4 } else { 1 };
-    if values.ncols() != width {
-        return Err(refused(format!("a channel has {} numbers a frame, expected {width}", values.ncols())));
-    }
+fn channel(kind: Kind, values: &PyReadonlyArray2<'_, f64>) -> PyResult<Channel> {
+    width("a channel", values, if matches!(kind, Kind::Turn(_)) { 4 } else { 1 })?;
+    let values = values.as_array();
     let numbers = || values.iter().copied().collect();
     Ok(match kind {
         Kind::Place(k) => Channel::Place(k, numbers()),
@@ -144,4 +152,13 @@ fn channel(kind: Kind, values: ArrayView2<'_, f64>) -> PyResult<Channel> {
         Kind::Heading => Channel::Heading(numbers()),
         Kind::Turn(angle) => Channel::Turn(angle, values.outer_iter().map(|q| [q[0], q[1], q[2], q[3]]).collect()),
     })
+}
+
+fn width(what: &str, values: &PyReadonlyArray2<'_, f64>, expected: usize) -> PyResult<()> {
+    let found = values.as_array().ncols();
+    if found == expected {
+        Ok(())
+    } else {
+        Err(refused(format!("{what} has {found} numbers a row, expected {expected}")))
+    }
 }

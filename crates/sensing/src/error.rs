@@ -15,6 +15,23 @@ pub enum SensingError {
         /// How many there should be.
         expected: usize,
     },
+    /// A bound or a standard deviation.
+    #[error("{what} is {found}, which is refused")]
+    Number {
+        /// Which.
+        what: &'static str,
+        /// Its value.
+        found: f64,
+    },
+    /// Numbers that are not finite: precisions make the equations definite otherwise.
+    #[error("the normal equations of the nuisances of trial {trial} have no solution")]
+    Singular {
+        /// Its place.
+        trial: usize,
+    },
+    /// The same of what all trials share.
+    #[error("the normal equations of what all trials share have no solution")]
+    SharedSingular,
     /// A path of a single pose, or of none.
     #[error("a path has {found} poses, expected at least 2")]
     Poses {
@@ -27,4 +44,11 @@ pub enum SensingError {
         /// s.
         found: f64,
     },
+}
+
+impl SensingError {
+    /// An error unless a number of rows is the expected one.
+    pub(crate) fn same(what: &'static str, found: usize, expected: usize) -> Result<(), Self> {
+        if found == expected { Ok(()) } else { Err(Self::Rows { what, found, expected }) }
+    }
 }

@@ -1,27 +1,35 @@
 //! What a sensor reads from a path, and what of the difference to what it did read is the sensor's own.
 //!
-//! A path is looked up (`path`), seen by a camera (`pose`), compared with a trial's measurements and whitened by their noise (`channel`, `whiten`,
-//! `measured`), and the nuisances that all trials of a dataset share are fitted (`nuisances`). The equations are in
-//! `docs/diagnosis.md`; the plain NumPy of `tests/parity/nuisances.py` is the specification.
+//! A path is looked up (`path`), seen by a camera (`pose`, `camera`), compared with a trial's measurements and whitened by
+//! their noise (`channel`, `whiten`, `measured`), and the nuisances that all trials of a dataset share are fitted
+//! (`nuisances`, `comparison`). The equations stand in these files; plain NumPy has them once more as the specification: the
+//! channels in `python/tumblers/diagnosis/reading.py`, the fit in `tests/parity/nuisances.py`.
 //!
 //! Lengths are in m, times in s, angles in rad.
 
+#![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
+mod camera;
 mod channel;
+mod comparison;
 mod error;
 mod loss;
 mod measured;
 mod nuisances;
 mod path;
 mod pose;
+mod tolerances;
 mod whiten;
 
+pub use camera::Camera;
 pub use channel::{Angle, Channel};
+pub use comparison::{Compared, Seen, compare};
 pub use error::SensingError;
 pub use loss::{FAR, HUBER};
 pub use measured::{CLOCK_STEP, Column, Measured};
-pub use nuisances::{Camera, Compared, Nuisances, Seen, Tolerances, compare};
-pub use path::Path;
+pub use nuisances::Nuisances;
+pub use path::{END_ROWS, Path};
 pub use pose::Pose;
+pub use tolerances::Tolerances;
 pub use whiten::Whiten;

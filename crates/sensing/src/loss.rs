@@ -1,12 +1,12 @@
 //! Huber's loss of whitened differences, and how much a trial's track counts.
 //!
 //! ```text
-//! ρ(r) = r² up to |r| = 4, 8|r| - 16 beyond
+//! ρ(r) = r² up to |r| = H, 2 H|r| - H² beyond,    w = 1/(1 + mean square/κ)
 //! ```
 
-/// Where the loss turns from square to linear, in sigmas.
+/// `H`, where the loss turns from square to linear, in sigmas.
 pub const HUBER: f64 = 4.0;
-/// A track whose mean square is beyond this counts by its logarithm.
+/// `κ`: a track whose mean square is beyond it counts by its logarithm.
 pub const FAR: f64 = 3.0;
 
 /// `ρ(r)`.

@@ -1,7 +1,6 @@
 //! What was measured in one trial, in units of its noise.
 
-use crate::nuisances::{CAMERA, Camera};
-use crate::{Channel, Path, SensingError, Whiten};
+use crate::{Camera, Channel, Path, SensingError, Whiten};
 
 /// Between two looks at a path from which the derivative by the clock is taken, s.
 pub const CLOCK_STEP: f64 = 2e-4;
@@ -49,18 +48,14 @@ impl Measured {
         whole: usize,
     ) -> Result<Self, SensingError> {
         for column in &columns {
-            let expected = column.channel.len();
-            for (what, found) in [("times", column.times.len()), ("a whitening matrix", column.whiten.count())] {
-                if found != expected {
-                    return Err(SensingError::Rows { what, found, expected });
-                }
-            }
+            SensingError::same("times", column.times.len(), column.channel.len())?;
+            SensingError::same("a whitening matrix", column.whiten.count(), column.channel.len())?;
+        }
+        if shared == 0 {
+            return Err(SensingError::Number { what: "how many numbers all trials share", found: 0.0 });
         }
         let tracked: usize = columns.iter().map(|column| column.times.len()).sum();
-        let expected = (tracked + outcomes) * shared;
-        if tolerance.len() != expected {
-            return Err(SensingError::Rows { what: "tolerance", found: tolerance.len(), expected });
-        }
+        SensingError::same("tolerance", tolerance.len() / shared, tracked + outcomes)?;
         let shifts = columns.iter().map(shift).collect();
         Ok(Self { columns, tolerance, shared, outcomes, whole, shifts })
     }
@@ -87,24 +82,13 @@ impl Measured {
 
     /// By number, its change with each nominal number.
     pub fn tolerance(&self) -> impl Iterator<Item = &[f64]> {
-        self.tolerance.chunks_exact(self.shared.max(1))
+        self.tolerance.chunks_exact(self.shared)
     }
 
-    /// The whitened differences: of the columns, then of the outcomes, `[constant, by scale]` each.
-    pub fn whitened(
-        &self,
-        path: &Path,
-        outcomes: &[[f64; 2]],
-        local: &[f64; 3],
-        shared: &[f64],
-    ) -> Result<Vec<f64>, SensingError> {
-        for (what, found, expected) in
-            [("outcomes", outcomes.len(), self.outcomes), ("what all trials share", shared.len(), self.shared + CAMERA)]
-        {
-            if found != expected {
-                return Err(SensingError::Rows { what, found, expected });
-            }
-        }
+    /// The whitened differences: of the columns, then of the outcomes, `[constant, by the camera's scale]` each.
+    ///
+    /// `shared` has the camera's heading and scale, then how far the nominal numbers are off.
+    pub fn whitened(&self, path: &Path, outcomes: &[[f64; 2]], local: &[f64; 3], shared: &[f64]) -> Vec<f64> {
         let camera = Camera::new(shared[0], shared[1]);
         let mut rows: Vec<[f64; 1]> = Vec::with_capacity(self.tracked() + self.outcomes);
         for column in &self.columns {
@@ -120,8 +104,8 @@ impl Measured {
             column.whiten.apply(&wrong, &mut rows);
         }
         rows.extend(outcomes.iter().map(|line| [line[0] + line[1] * shared[1]]));
-        let off = &shared[CAMERA..];
-        Ok(rows.iter().zip(self.tolerance()).map(|(row, by)| row[0] - dot(by, off)).collect())
+        let off = &shared[Camera::COUNT..];
+        rows.iter().zip(self.tolerance()).map(|(row, by)| row[0] - dot(by, off)).collect()
     }
 
     /// The whitened differences with their derivatives by the sensor's nuisances, the nominal numbers as they are.
@@ -144,7 +128,7 @@ impl Measured {
                 .collect();
             column.whiten.apply(&raw, &mut rows);
         }
-        rows.extend(outcomes.iter().map(|line| [0.0, 0.0, 0.0, 0.0, 0.0, line[0] + line[1] * camera.scale()]));
+        rows.extend(outcomes.iter().map(|line| [0.0, 0.0, 0.0, 0.0, 0.0, line[0] + line[1] * camera.scale]));
         rows
     }
 

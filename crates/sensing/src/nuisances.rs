@@ -12,59 +12,13 @@
 
 use crate::loss::{huber, weight};
 use crate::measured::{Measured, Row, dot};
-use crate::{Path, SensingError};
+use crate::{Camera, Path, Seen, SensingError, Tolerances};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use rayon::prelude::*;
 
 const ITERATIONS: usize = 3;
-/// The camera's numbers among those that all trials share.
-pub(crate) const CAMERA: usize = 2;
-
-/// A camera that is turned about `+z` and scaled.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Camera {
-    /// Length seen over true length.
-    pub(crate) size: f64,
-    /// Sine and cosine of the heading, and of its half.
-    pub(crate) turned: (f64, f64),
-    pub(crate) half: (f64, f64),
-}
-
-impl Camera {
-    /// A camera that is turned by `heading` from `+y` towards `-x`, and shows lengths greater by the share `scale`.
-    pub fn new(heading: f64, scale: f64) -> Self {
-        Self { size: 1.0 + scale, turned: heading.sin_cos(), half: (0.5 * heading).sin_cos() }
-    }
-
-    /// By what share lengths are greater.
-    pub fn scale(&self) -> f64 {
-        self.size - 1.0
-    }
-}
-
-/// How far the nuisances may be off.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Tolerances {
-    /// By trial, of the clock (s) and the origin (m): bounds, and standard deviations.
-    pub local_bounds: Vec<[f64; 3]>,
-    /// Standard deviations of the same.
-    pub local_sigmas: Vec<[f64; 3]>,
-    /// Of the camera's heading (rad) and scale, then of the nominal numbers in their tolerances.
-    pub shared_low: Vec<f64>,
-    /// Upper bounds of the same.
-    pub shared_high: Vec<f64>,
-    /// Standard deviations of the same.
-    pub shared_sigmas: Vec<f64>,
-}
-
-/// What a hypothesis says of one trial.
-#[derive(Debug, Clone)]
-pub struct Seen<'a> {
-    /// None where the model cannot be run.
-    pub path: Option<Path<'a>>,
-    /// Scaled differences of the outcomes, `[constant, by the camera's scale]` each.
-    pub outcomes: Vec<[f64; 2]>,
-}
+/// The camera's numbers come first of those that all trials share.
+const CAMERA: usize = Camera::COUNT;
 
 /// Nuisances at their best.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,66 +29,24 @@ pub struct Nuisances {
     pub shared: Vec<f64>,
 }
 
-/// How wrong one run of all trials is.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Compared {
-    /// At their best.
-    pub nuisances: Nuisances,
-    /// By trial the whitened differences, none where it was not run.
-    pub wrong: Vec<Option<Vec<f64>>>,
-}
-
-/// Compares some runs of all trials with what was measured in them.
-///
-/// What all trials share is fitted from those of `train`; the nominal numbers are held where `held` says how far they are
-/// off, and nothing is fitted where `fit` is false.
-pub fn compare(
-    trials: &[&Measured],
-    runs: &[Vec<Seen>],
-    tolerances: &Tolerances,
-    train: &[bool],
-    held: Option<&[f64]>,
-    fit: bool,
-) -> Result<Vec<Compared>, SensingError> {
-    let count = tolerances.shared_sigmas.len();
-    let same = |what, found, expected| {
-        if found == expected { Ok(()) } else { Err(SensingError::Rows { what, found, expected }) }
-    };
-    same("local_bounds", tolerances.local_bounds.len(), trials.len())?;
-    same("local_sigmas", tolerances.local_sigmas.len(), trials.len())?;
-    same("shared_low", tolerances.shared_low.len(), count)?;
-    same("shared_high", tolerances.shared_high.len(), count)?;
-    same("train", train.len(), trials.len())?;
-    same("held", held.map_or(count, |off| off.len() + CAMERA), count)?;
-    for trial in trials {
-        same("a trial's shared numbers", trial.shared() + CAMERA, count)?;
-    }
-    for run in runs {
-        same("a run", run.len(), trials.len())?;
-        for (seen, trial) in run.iter().zip(trials) {
-            same("a trial's outcomes", seen.outcomes.len(), if seen.path.is_some() { trial.outcomes() } else { 0 })?;
+impl Nuisances {
+    /// Those of a perfect sensor, of so many trials that share so many numbers.
+    pub(crate) fn perfect(trials: usize, count: usize, held: Option<&[f64]>) -> Self {
+        let mut shared = vec![0.0; count];
+        if let Some(off) = held {
+            shared[Camera::COUNT..].copy_from_slice(off);
         }
+        Self { local: vec![[0.0; 3]; trials], shared }
     }
-    Ok(runs
-        .par_iter()
-        .map(|run| {
-            let problem = Problem { trials, run, tolerances, train, held: held.is_some() };
-            let start = Nuisances { local: vec![[0.0; 3]; trials.len()], shared: problem.perfect(held) };
-            let found = if fit { problem.fitted(start) } else { start };
-            let wrong = problem
-                .each(|i, trial, path| trial.whitened(path, &run[i].outcomes, &found.local[i], &found.shared).ok());
-            Compared { nuisances: found, wrong }
-        })
-        .collect())
 }
 
 /// The nuisances of one run.
-struct Problem<'a> {
-    trials: &'a [&'a Measured],
-    run: &'a [Seen<'a>],
-    tolerances: &'a Tolerances,
-    train: &'a [bool],
-    held: bool,
+pub(crate) struct Problem<'a> {
+    pub trials: &'a [&'a Measured],
+    pub run: &'a [Seen<'a>],
+    pub tolerances: &'a Tolerances,
+    pub train: &'a [bool],
+    pub held: bool,
 }
 
 /// The normal equations of one trial: of its own nuisances, of these by what all share, and of what all share.
@@ -147,35 +59,32 @@ struct Normal {
 }
 
 impl Problem<'_> {
-    fn perfect(&self, held: Option<&[f64]>) -> Vec<f64> {
-        let mut shared = vec![0.0; self.tolerances.shared_sigmas.len()];
-        if let Some(off) = held {
-            shared[CAMERA..].copy_from_slice(off);
-        }
-        shared
-    }
-
     /// What `of` makes of each trial that was run.
-    fn each<T: Send>(&self, of: impl Fn(usize, &Measured, &Path) -> Option<T> + Sync) -> Vec<Option<T>> {
-        self.run.par_iter().enumerate().map(|(i, seen)| of(i, self.trials[i], seen.path.as_ref()?)).collect()
+    pub fn each<T: Send>(
+        &self,
+        of: impl Fn(usize, &Measured, &Path) -> Result<T, SensingError> + Sync,
+    ) -> Result<Vec<Option<T>>, SensingError> {
+        let one = |(i, seen): (usize, &Seen)| seen.path.as_ref().map(|path| of(i, self.trials[i], path)).transpose();
+        self.run.par_iter().enumerate().map(one).collect()
     }
 
-    fn fitted(&self, start: Nuisances) -> Nuisances {
+    /// The nuisances at their best, from a perfect sensor's.
+    pub fn fitted(&self, start: Nuisances) -> Result<Nuisances, SensingError> {
         let mut at = start;
         let clocks = self.each(|i, trial, path| {
-            Some(trial.clock(path, self.tolerances.local_bounds[i][0], &self.tolerances.local_sigmas[i]))
-        });
+            Ok(trial.clock(path, self.tolerances.local_bounds[i][0], &self.tolerances.local_sigmas[i]))
+        })?;
         for (local, clock) in at.local.iter_mut().zip(clocks) {
             local[0] = clock.unwrap_or(0.0);
         }
         for _ in 0..ITERATIONS {
-            at = self.improved(&at);
+            at = self.improved(&at)?;
         }
-        at
+        Ok(at)
     }
 
     /// One step of Gauss and Newton's method.
-    fn improved(&self, at: &Nuisances) -> Nuisances {
+    fn improved(&self, at: &Nuisances) -> Result<Nuisances, SensingError> {
         let bounds = self.tolerances;
         let precision =
             DVector::from_iterator(at.shared.len(), bounds.shared_sigmas.iter().map(|sigma| sigma.powi(-2)));
@@ -188,9 +97,10 @@ impl Problem<'_> {
             let block = self.normal(trial, path, &self.run[i].outcomes, &at.local[i], &at.shared);
             let weights = Vector3::from(bounds.local_sigmas[i].map(|sigma| sigma.powi(-2)));
             let own = block.own_right + weights.component_mul(&Vector3::from(at.local[i]));
-            let inverse = (block.own + Matrix3::from_diagonal(&weights)).cholesky()?.inverse();
-            Some((block, inverse, own))
-        });
+            let definite = (block.own + Matrix3::from_diagonal(&weights)).cholesky();
+            let inverse = definite.ok_or(SensingError::Singular { trial: i })?.inverse();
+            Ok((block, inverse, own))
+        })?;
         for (block, inverse, own) in
             blocks.iter().zip(self.train).filter_map(|(block, train)| block.as_ref().filter(|_| *train))
         {
@@ -198,7 +108,7 @@ impl Problem<'_> {
             normal += &block.shared - &reduced * &block.by_shared;
             right -= &block.shared_right - &reduced * own;
         }
-        let change = normal.lu().solve(&right).unwrap_or_else(|| DVector::zeros(at.shared.len()));
+        let change = normal.lu().solve(&right).ok_or(SensingError::SharedSingular)?;
         let mut next = at.clone();
         for (k, value) in next.shared.iter_mut().enumerate() {
             *value = (*value + change[k]).clamp(bounds.shared_low[k], bounds.shared_high[k]);
@@ -211,7 +121,7 @@ impl Problem<'_> {
                 next.local[i][k] = (at.local[i][k] - moved[k]).clamp(-most, most);
             }
         }
-        next
+        Ok(next)
     }
 
     fn normal(&self, trial: &Measured, path: &Path, outcomes: &[[f64; 2]], local: &[f64; 3], shared: &[f64]) -> Normal {

@@ -2,8 +2,8 @@
 
 use crate::{Pose, SensingError};
 
-/// How near to the last row the last time is read, in rows.
-const LAST: f64 = 1e-6;
+/// How near to the last row the end of a path is read, in rows.
+pub const END_ROWS: f64 = 1e-6;
 
 /// The seen poses of one run at even times: place, then the unit quaternion `w, x, y, z`, of one sign along the path.
 #[derive(Debug, Clone, Copy)]
@@ -27,7 +27,7 @@ impl<'a> Path<'a> {
     /// The pose at a time, the ends held.
     #[inline]
     pub fn at(&self, time: f64) -> Pose {
-        let place = (time / self.interval).clamp(0.0, self.poses.len() as f64 - 1.0 - LAST);
+        let place = (time / self.interval).clamp(0.0, self.poses.len() as f64 - 1.0 - END_ROWS);
         let row = place as usize;
         let share = place - row as f64;
         let (before, after) = (&self.poses[row], &self.poses[row + 1]);

@@ -20,14 +20,11 @@ impl Pose {
     #[inline]
     pub fn through(&self, camera: &Camera, origin: [f64; 2]) -> Pose {
         let [x, y, z] = self.position;
-        let (turned, half) = (&camera.turned, &camera.half);
-        let position = [
-            camera.size * (turned.1 * x - turned.0 * y) + origin[0],
-            camera.size * (turned.0 * x + turned.1 * y) + origin[1],
-            z,
-        ];
+        let (size, turned) = (1.0 + camera.scale, &camera.turned);
+        let position =
+            [size * (turned.1 * x - turned.0 * y) + origin[0], size * (turned.0 * x + turned.1 * y) + origin[1], z];
         let [w, i, j, k] = self.orientation;
-        let (s, c) = *half;
+        let (s, c) = camera.half;
         Pose { position, orientation: [c * w - s * k, c * i - s * j, c * j + s * i, c * k + s * w] }
     }
 

@@ -3,7 +3,7 @@
 use crate::SensingError;
 
 /// A lower triangle, row after row.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Whiten {
     count: usize,
     packed: Vec<f64>,
@@ -11,7 +11,7 @@ pub struct Whiten {
 
 impl Whiten {
     /// From the rows of a square matrix, of which what is above the diagonal does not count.
-    pub fn new<'a>(rows: impl ExactSizeIterator<Item = Vec<f64>> + 'a) -> Result<Self, SensingError> {
+    pub fn new(rows: impl ExactSizeIterator<Item = Vec<f64>>) -> Result<Self, SensingError> {
         let count = rows.len();
         let mut packed = Vec::with_capacity(count * (count + 1) / 2);
         for (r, row) in rows.enumerate() {

@@ -68,12 +68,12 @@ proptest! {
         let path = Path::new(INTERVAL, &rows).unwrap();
         let trial = measured(&path, [1e-3, 1e-5, -1e-5], &Camera::new(0.01, 1e-3), quaternions);
         let local = [clock, x, -x];
-        let wrong = |local: [f64; 3], heading, scale| trial.whitened(&path, &[], &local, &[heading, scale, 0.0]).unwrap();
+        let wrong = |local: [f64; 3], heading, scale| trial.whitened(&path, &[], &local, &[heading, scale, 0.0]);
         let here = wrong(local, heading, scale);
         let found = trial.linearised(&path, &[], &local, &Camera::new(heading, scale));
         // A path is linear between its rows: a step of the clock that crosses one, and products of two nuisances that are
         // left out, are off by a share.
-        for (k, step) in [2e-4, 1e-8, 1e-8, 1e-6, 1e-6].into_iter().enumerate() {
+        for (k, step) in [5e-5, 1e-8, 1e-8, 1e-6, 1e-6].into_iter().enumerate() {
             let mut moved = local;
             let mut camera = [heading, scale];
             if k < 3 { moved[k] += step } else { camera[k - 3] += step }
@@ -135,6 +135,9 @@ fn what_does_not_belong_together_is_refused() {
     let trial = measured(&path, [0.0; 3], &Camera::new(0.0, 0.0), false);
     let run = vec![Seen { path: Some(path), outcomes: vec![[1.0, 0.0]] }];
     let error = compare(&[&trial], &[run], &tolerances(1), &[true], None, true).unwrap_err();
-    assert_eq!(error.to_string(), "a trial's outcomes has 1 rows, expected 0");
+    assert_eq!(error.to_string(), "outcomes has 1 rows, expected 0");
     assert!(compare(&[&trial], &[], &tolerances(2), &[true], None, true).is_err());
+    let mut negative = tolerances(1);
+    negative.local_bounds[0][0] = -1e-3;
+    assert!(compare(&[&trial], &[], &negative, &[true], None, true).is_err());
 }

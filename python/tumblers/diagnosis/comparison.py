@@ -10,6 +10,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import _core
 from ..dataset import Dataset
 from ..effects.base import Effect
 from .floor import Floor, Sensitivity, build_floors, choose_steps, measure_sensitivity
@@ -94,7 +95,8 @@ class Comparison:
         self._nominal_log_determinant: float
         self._start()
         self.nuisances = NuisanceFit(dataset.sensor, self.readers, simulator.threads)
-        self._whole: WeakKeyDictionary[Floor, Stretch] = WeakKeyDictionary()
+        # A floor serves many comparisons: its native half is made once, and goes with it.
+        self._natives: WeakKeyDictionary[Floor, _core.Measured] = WeakKeyDictionary()
 
     def _start(self) -> None:
         """Take the nominal model's paths and noise."""
@@ -271,31 +273,36 @@ class Comparison:
         nuisances
             Of the same or another model.
         """
-        shared = np.concatenate([nuisances.camera, nuisances.tolerance])
-        return replace(nuisances, trials=self._whitened(self._stretches(1.0), paths, nuisances.local, shared))
+        trials = tuple(
+            np.full(self.sizes[i], _NOT_RUN) if path is None else self.differences(i, path, nuisances)
+            for i, path in enumerate(paths)
+        )
+        return replace(nuisances, trials=trials)
 
-    def raw(self, trial: int, path: Path, local: Floats, camera: Floats) -> dict[str, Floats]:
-        """Return `measured - model` of a trial by channel, m or rad, NaN where lost, for given nuisances."""
-        return self.readers[trial].differences(path, local, camera)
+    def differences(self, trial: int, path: Path, nuisances: Residual) -> Floats:
+        """Return the whitened differences of a trial with all nuisances held, shape (n_i,).
+
+        Parameters
+        ----------
+        trial
+            Its place in the dataset.
+        path
+            The model's.
+        nuisances
+            Of the same or another model.
+        """
+        shared = np.concatenate([nuisances.camera, nuisances.tolerance])
+        return self._all_of(trial).whitened(path, nuisances.local[trial], shared)
 
     def _stretches(self, share: float) -> list[Stretch]:
         """Return what of each trial is compared."""
         if share >= 1.0:
-            return [self._all_of(reader, floor) for reader, floor in zip(self.readers, self.floors, strict=True)]
+            return [self._all_of(trial) for trial in range(len(self.readers))]
         each = zip(self.readers, self.floors, self.nuisances.local_bounds[:, 0], strict=True)
         return [Stretch.beginning(reader, floor, share * reader.duration_s - bound) for reader, floor, bound in each]
 
-    def _all_of(self, reader: Reader, floor: Floor) -> Stretch:
-        # A floor serves many comparisons, and its native half is made once.
-        if floor not in self._whole:
-            self._whole[floor] = Stretch.whole(reader, floor)
-        return self._whole[floor]
-
-    def _whitened(
-        self, stretches: Sequence[Stretch], paths: Sequence[Path | None], local: Floats, shared: Floats
-    ) -> tuple[Floats, ...]:
-        """Return the whitened differences by trial."""
-        return tuple(
-            np.full(len(stretch.counts), _NOT_RUN) if path is None else stretch.whitened(path, own, shared)
-            for stretch, path, own in zip(stretches, paths, local, strict=True)
-        )
+    def _all_of(self, trial: int) -> Stretch:
+        reader, floor = self.readers[trial], self.floors[trial]
+        stretch = Stretch.whole(reader, floor, self._natives.get(floor))
+        self._natives[floor] = stretch.native
+        return stretch

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..dataset import Sensor
+from ..progress import native_call
 from .floor import SHARED
 from .pose import Path
 from .reading import Reader
@@ -116,22 +117,28 @@ class NuisanceFit:
             How far the nominal numbers are off, shape (`SHARED`,); fitted if None.
         fit
             False to take the sensor as perfect.
+
+        Raises
+        ------
+        SimulationError
+            The native module gave up.
         """
         counted = set(train)
-        found = _core.compare(
-            [stretch.native for stretch in stretches],
-            [[stretch.seen(path) for stretch, path in zip(stretches, paths, strict=True)] for paths in runs],
-            self.local_bounds.tolist(),
-            self.local_sigmas.tolist(),
-            (*(bound.tolist() for bound in self.shared_bounds), self.shared_sigmas.tolist()),
-            [i in counted for i in range(len(stretches))],
-            held=None if tolerance is None else tolerance.tolist(),
-            fit=fit,
-            threads=self.threads,
-        )
+        with native_call("comparisons", len(runs), progress=False):
+            found = _core.compare(
+                [stretch.native for stretch in stretches],
+                [[stretch.seen(path) for stretch, path in zip(stretches, paths, strict=True)] for paths in runs],
+                self.local_bounds.tolist(),
+                self.local_sigmas.tolist(),
+                (*(bound.tolist() for bound in self.shared_bounds), self.shared_sigmas.tolist()),
+                [i in counted for i in range(len(stretches))],
+                held=None if tolerance is None else tolerance.tolist(),
+                fit=fit,
+                threads=self.threads,
+            )
         return [
             Fitted(
-                local.reshape(-1, 3),
+                local,
                 shared,
                 tuple(
                     None if values is None else stretch.over_all(values)

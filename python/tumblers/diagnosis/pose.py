@@ -8,6 +8,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import _core
+
 __all__ = ["Path", "body_axis", "heading_of", "relative_turn", "tilt_of"]
 
 Floats = NDArray[np.float64]
@@ -42,7 +44,7 @@ class Path:
         time_s
             Times, s.
         """
-        place = np.clip(time_s / self.interval_s, 0.0, len(self.position_m) - 1.000001)
+        place = np.clip(time_s / self.interval_s, 0.0, len(self.position_m) - 1.0 - _core.END_ROWS)
         row = place.astype(np.intp)
         share = (place - row)[:, None]
         between = self.poses[row] * (1.0 - share) + self.poses[row + 1] * share

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,19 +27,28 @@ class Stretch:
         Of its frames alone. A beginning has no outcomes: they are of the whole.
     counts
         Which of the whole trial's numbers are compared, shape (n,).
-    tracked
-        How many of the whole trial's numbers were measured along its track.
+    native
+        The measurements with their noise, as the native module takes them.
     """
 
     reader: Reader
     floor: Floor
     counts: NDArray[np.bool_]
-    tracked: int
+    native: _core.Measured
 
     @classmethod
-    def whole(cls, reader: Reader, floor: Floor) -> Stretch:
-        """Return all of a trial."""
-        return cls(reader, floor, np.ones(floor.size, dtype=bool), floor.tracked)
+    def whole(cls, reader: Reader, floor: Floor, native: _core.Measured | None = None) -> Stretch:
+        """Return all of a trial.
+
+        Parameters
+        ----------
+        reader, floor
+            Of the trial.
+        native
+            What a former stretch of the same had; made if None.
+        """
+        made = _native(reader, floor, floor.tracked) if native is None else native
+        return cls(reader, floor, np.ones(floor.size, dtype=bool), made)
 
     @classmethod
     def beginning(cls, reader: Reader, floor: Floor, last_s: float) -> Stretch:
@@ -56,19 +64,8 @@ class Stretch:
             Time of the last frame at most, s.
         """
         frames = int(np.searchsorted(reader.observed.time_s, last_s, side="right"))
-        return cls(reader.beginning(frames), floor.beginning(frames), floor.counts(frames), floor.tracked)
-
-    @cached_property
-    def native(self) -> _core.Measured:
-        """The measurements with their noise, as the native module takes them."""
-        observed, columns = self.reader.observed, []
-        for name, kept in self.floor.valid.items():
-            kind, values = name, observed.values.get(name, np.empty(0))[:, None]
-            if name not in observed.values:
-                assert observed.orientation is not None
-                kind, values = f"turn_{name}", observed.orientation
-            columns.append((kind, observed.time_s[kept], values[kept], self.floor.whiten[name]))
-        return _core.Measured(columns, self.floor.tolerance, len(self.floor.outcome_scale), self.tracked)
+        begun, noise = reader.beginning(frames), floor.beginning(frames)
+        return cls(begun, noise, floor.counts(frames), _native(begun, noise, floor.tracked))
 
     def seen(self, path: Path | None) -> _core._Seen:
         """Return a path, and the scaled differences of the outcomes: constant, and by the camera's scale, shape (k, 2).
@@ -112,3 +109,15 @@ class Stretch:
         values = np.zeros(len(self.counts))
         values[self.counts] = compared
         return values
+
+
+def _native(reader: Reader, floor: Floor, tracked: int) -> _core.Measured:
+    """Return measurements with their noise, of a track that has so many numbers as a whole."""
+    observed, columns = reader.observed, []
+    for name, kept in floor.valid.items():
+        kind, values = name, observed.values.get(name, np.empty(0))[:, None]
+        if name not in observed.values:
+            assert observed.orientation is not None
+            kind, values = f"turn_{name}", observed.orientation
+        columns.append((kind, observed.time_s[kept], values[kept], floor.whiten[name]))
+    return _core.Measured(columns, floor.tolerance, len(floor.outcome_scale), tracked)

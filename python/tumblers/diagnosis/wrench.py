@@ -182,16 +182,6 @@ def _adds(edges: Floats, wrench: Floats) -> Edit:
     return edit
 
 
-def _differences(comparison: Comparison, residual: Residual, trial: int, path: Path) -> Floats:
-    """Return the whitened differences of a trial for the nuisances that fit the nominal model."""
-    floor = comparison.floors[trial]
-    raw = comparison.raw(trial, path, residual.local[trial], residual.camera)
-    terms = comparison.readers[trial].outcome_terms(path, residual.camera)
-    parts = [floor.whiten[name] @ raw[name][kept] for name, kept in floor.valid.items()]
-    outcomes = [terms[name] * scale for name, scale in floor.outcome_scale.items()]
-    return np.asarray(np.concatenate([*parts, outcomes]) - floor.tolerance @ residual.tolerance, dtype=np.float64)
-
-
 def _nuisances(comparison: Comparison, residual: Residual, trial: int, path: Path) -> Floats:
     """Return the whitened columns of the nuisances in units of their priors, shape (n, m)."""
     floor = comparison.floors[trial]
@@ -227,7 +217,7 @@ def _slopes(
         columns = []
         for k in range(state.wrench.size):
             ends = [
-                state.values if p is None else _differences(comparison, residual, i, p)
+                state.values if p is None else comparison.differences(i, p, residual)
                 for p in (next(found), next(found))
             ]
             odd, even = 0.5 * (ends[0] - ends[1]), 0.5 * (ends[0] + ends[1]) - state.values
@@ -282,7 +272,7 @@ def _improved(
             if path is None:
                 error = max(error, HUBER**2)
                 continue
-            values = _differences(comparison, residual, i, path)
+            values = comparison.differences(i, path, residual)
             # The shortest step says how far the derivatives hold where no step is of use.
             wrong = float(np.mean(np.minimum(np.abs(values - state.values - slopes[i] @ change), HUBER) ** 2))
             moved = _State(_moved(state, change, prior[i]), values, path, wrong)
