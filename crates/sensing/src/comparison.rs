@@ -1,17 +1,8 @@
 //! Runs of all trials against what was measured in them.
 
 use crate::nuisances::Problem;
-use crate::{Camera, Measured, Nuisances, Path, SensingError, Tolerances};
+use crate::{Camera, Measured, Nuisances, Seen, SensingError, Tolerances};
 use rayon::prelude::*;
-
-/// What a hypothesis says of one trial.
-#[derive(Debug, Clone)]
-pub struct Seen<'a> {
-    /// None where the model cannot be run.
-    pub path: Option<Path<'a>>,
-    /// Scaled differences of the outcomes, `[constant, by the camera's scale]` each.
-    pub outcomes: Vec<[f64; 2]>,
-}
 
 /// How wrong one run of all trials is.
 #[derive(Debug, Clone, PartialEq)]
