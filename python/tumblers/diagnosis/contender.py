@@ -83,9 +83,8 @@ def of_fit(fitter: Fitter, fit: Fit) -> Contender:
 
 def of_nominal(fitter: Fitter) -> Contender:
     """Return the nominal model as a contender, against the noise of the moment."""
-    comparison = fitter.comparison
-    residual = comparison.residual(comparison.nominal_paths)
-    return Contender((), None, residual, fitter.cost(residual, np.zeros(1)), comparison.log_determinant)
+    residual, cost = fitter.nominal()
+    return Contender((), None, residual, cost, fitter.comparison.log_determinant)
 
 
 def likeliest_first(contenders: Iterable[Contender]) -> list[Contender]:

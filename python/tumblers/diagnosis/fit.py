@@ -147,6 +147,11 @@ class Fitter:
         prior = float(np.sum(residual.prior**2) + np.sum((point / PRIOR_SIGMA) ** 2))
         return sum(self.trial_cost(residual, i) for i in chosen) + prior
 
+    def nominal(self) -> tuple[Residual, float]:
+        """Return how wrong the nominal model is against the noise of the moment, and its objective."""
+        residual = self.comparison.residual(self.comparison.nominal_paths)
+        return residual, self.cost(residual, np.zeros(1))
+
     def again(self, fit: Fit) -> Fit:
         """Return a fit as it is against the noise of the moment, its derivatives as they were.
 

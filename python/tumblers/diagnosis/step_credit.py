@@ -8,9 +8,8 @@ hypothesis that is not wrong; whichever leads then imposes its steps on all othe
 
 from __future__ import annotations
 
-import numpy as np
-
 from ..effects.base import Effect
+from .comparison import Residual
 from .fit import Fitter
 from .predictive import is_right
 
@@ -39,14 +38,14 @@ def step_credit(fitter: Fitter, effects: tuple[Effect, ...]) -> float:
 def _measured(fitter: Fitter, effects: tuple[Effect, ...]) -> float:
     comparison = fitter.comparison
 
-    def total() -> float:
+    def nominal() -> tuple[Residual, float]:
         fitter.take_likeliest_noise(())
-        residual = comparison.residual(comparison.nominal_paths)
-        return fitter.cost(residual, np.zeros(1)) + comparison.log_determinant
+        residual, cost = fitter.nominal()
+        return residual, cost + comparison.log_determinant
 
     with comparison.restored():
-        before = total()
+        _, before = nominal()
         comparison.take_steps_of(effects)
-        after = total()
-        right = is_right(comparison, comparison.residual(comparison.nominal_paths))
+        residual, after = nominal()
+        right = is_right(comparison, residual)
     return max(before - after, 0.0) if right else 0.0
