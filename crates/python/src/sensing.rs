@@ -1,7 +1,9 @@
 //! What was measured in a trial, and its comparison with paths.
 
-use crate::convert::{choose, refused, table};
+use crate::convert::{choose, quaternion, refused, table};
 use ::sensing::{Angle, Camera, Channel, Column, Measured, Path, Seen, Tolerances, Whiten};
+use nalgebra::UnitQuaternion;
+use numpy::ndarray::ArrayView1;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use rayon::ThreadPoolBuilder;
@@ -150,7 +152,10 @@ fn channel(kind: Kind, values: &PyReadonlyArray2<'_, f64>) -> PyResult<Channel> 
         Kind::Place(k) => Channel::Place(k, numbers()),
         Kind::Tilt => Channel::Tilt(numbers()),
         Kind::Heading => Channel::Heading(numbers()),
-        Kind::Turn(angle) => Channel::Turn(angle, values.outer_iter().map(|q| [q[0], q[1], q[2], q[3]]).collect()),
+        Kind::Turn(angle) => {
+            let turn = |q: ArrayView1<'_, f64>| UnitQuaternion::new_unchecked(quaternion([q[0], q[1], q[2], q[3]]));
+            Channel::Turn(angle, values.outer_iter().map(turn).collect())
+        }
     })
 }
 

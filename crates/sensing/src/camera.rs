@@ -1,13 +1,14 @@
 //! A camera that looks down on the substrate.
 
+use nalgebra::{UnitQuaternion, Vector3};
+
 /// A camera that is turned about `+z` and scaled.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
+    /// How the scene is turned.
+    pub(crate) turn: UnitQuaternion<f64>,
     /// By what share lengths are greater.
     pub(crate) scale: f64,
-    /// Sine and cosine of the heading, and of its half.
-    pub(crate) turned: (f64, f64),
-    pub(crate) half: (f64, f64),
 }
 
 impl Camera {
@@ -16,6 +17,6 @@ impl Camera {
 
     /// A camera that is turned by `heading` from `+y` towards `-x`, rad, and shows lengths greater by the share `scale`.
     pub fn new(heading: f64, scale: f64) -> Self {
-        Self { scale, turned: heading.sin_cos(), half: (0.5 * heading).sin_cos() }
+        Self { turn: UnitQuaternion::from_axis_angle(&Vector3::z_axis(), heading), scale }
     }
 }

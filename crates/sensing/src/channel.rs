@@ -1,6 +1,7 @@
 //! The channels of a track: what each reads from a pose, and how that moves with the sensor's nuisances.
 
 use crate::Pose;
+use nalgebra::UnitQuaternion;
 
 /// A component of the rotation from model to measurement, about a body axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,22 +23,17 @@ pub enum Channel {
     Tilt(Vec<f64>),
     /// The angle of the long axis's projection from `+y` towards `-x`.
     Heading(Vec<f64>),
-    /// A part of the whole orientation, unit quaternions `w, x, y, z`.
-    Turn(Angle, Vec<[f64; 4]>),
+    /// A part of the whole orientation.
+    Turn(Angle, Vec<UnitQuaternion<f64>>),
 }
 
 impl Channel {
     /// Number of frames.
-    pub fn len(&self) -> usize {
+    pub fn frames(&self) -> usize {
         match self {
             Channel::Place(_, values) | Channel::Tilt(values) | Channel::Heading(values) => values.len(),
             Channel::Turn(_, values) => values.len(),
         }
-    }
-
-    /// Whether there is no frame.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
     }
 
     /// `measured - model` in a frame, for a pose as the sensor sees it.
@@ -58,7 +54,7 @@ impl Channel {
     /// The derivatives of `wrong` by the origin `(x, y)`, the camera's heading and its scale, for a pose of the model.
     #[inline]
     pub fn by_sensor(&self, pose: &Pose) -> [f64; 4] {
-        let [x, y, _] = pose.position;
+        let (x, y) = (pose.position.x, pose.position.y);
         match self {
             Channel::Place(0, _) => [-1.0, 0.0, y, -x],
             Channel::Place(1, _) => [0.0, -1.0, -x, -y],

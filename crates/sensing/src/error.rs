@@ -5,9 +5,9 @@ use thiserror::Error;
 /// Sizes that do not belong together, or a path that cannot be read.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum SensingError {
-    /// A number of rows.
-    #[error("{what} has {found} rows, expected {expected}")]
-    Rows {
+    /// How many of something there are.
+    #[error("{what}: {found} found, {expected} expected")]
+    Count {
         /// Of what.
         what: &'static str,
         /// How many there are.
@@ -47,8 +47,8 @@ pub enum SensingError {
 }
 
 impl SensingError {
-    /// An error unless a number of rows is the expected one.
+    /// An error unless there are as many as expected.
     pub(crate) fn same(what: &'static str, found: usize, expected: usize) -> Result<(), Self> {
-        if found == expected { Ok(()) } else { Err(Self::Rows { what, found, expected }) }
+        if found == expected { Ok(()) } else { Err(Self::Count { what, found, expected }) }
     }
 }

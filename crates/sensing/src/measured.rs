@@ -48,14 +48,14 @@ impl Measured {
         whole: usize,
     ) -> Result<Self, SensingError> {
         for column in &columns {
-            SensingError::same("times", column.times.len(), column.channel.len())?;
-            SensingError::same("a whitening matrix", column.whiten.count(), column.channel.len())?;
+            SensingError::same("times", column.times.len(), column.channel.frames())?;
+            SensingError::same("a whitening matrix", column.whiten.count(), column.channel.frames())?;
         }
         if shared == 0 {
             return Err(SensingError::Number { what: "how many numbers all trials share", found: 0.0 });
         }
         let tracked: usize = columns.iter().map(|column| column.times.len()).sum();
-        SensingError::same("tolerance", tolerance.len() / shared, tracked + outcomes)?;
+        SensingError::same("tolerance", tolerance.len(), (tracked + outcomes) * shared)?;
         let shifts = columns.iter().map(shift).collect();
         Ok(Self { columns, tolerance, shared, outcomes, whole, shifts })
     }

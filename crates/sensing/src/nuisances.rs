@@ -11,12 +11,14 @@
 //! count. A trial that the paths are far from counts less, `w_t = 1/(1 + mean square/κ)`.
 
 use crate::loss::{huber, weight};
-use crate::measured::{Measured, Row, dot};
+use crate::measured::{Measured, dot};
 use crate::{Camera, Path, Seen, SensingError, Tolerances};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use rayon::prelude::*;
 
 const ITERATIONS: usize = 3;
+/// A trial's own nuisances: its clock, and its origin in `x` and `y`.
+const LOCAL: usize = 3;
 /// The camera's numbers come first of those that all trials share.
 const CAMERA: usize = Camera::COUNT;
 
@@ -34,7 +36,7 @@ impl Nuisances {
     pub(crate) fn perfect(trials: usize, count: usize, held: Option<&[f64]>) -> Self {
         let mut shared = vec![0.0; count];
         if let Some(off) = held {
-            shared[Camera::COUNT..].copy_from_slice(off);
+            shared[CAMERA..].copy_from_slice(off);
         }
         Self { local: vec![[0.0; 3]; trials], shared }
     }
@@ -47,15 +49,6 @@ pub(crate) struct Problem<'a> {
     pub tolerances: &'a Tolerances,
     pub train: &'a [bool],
     pub held: bool,
-}
-
-/// The normal equations of one trial: of its own nuisances, of these by what all share, and of what all share.
-struct Normal {
-    own: Matrix3<f64>,
-    own_right: Vector3<f64>,
-    by_shared: DMatrix<f64>,
-    shared: DMatrix<f64>,
-    shared_right: DVector<f64>,
 }
 
 impl Problem<'_> {
@@ -93,20 +86,23 @@ impl Problem<'_> {
         if self.held {
             right.rows_mut(CAMERA, at.shared.len() - CAMERA).fill(0.0);
         }
+        let count = at.shared.len();
         let blocks = self.each(|i, trial, path| {
-            let block = self.normal(trial, path, &self.run[i].outcomes, &at.local[i], &at.shared);
+            let products = self.products(trial, path, &self.run[i].outcomes, &at.local[i], &at.shared);
             let weights = Vector3::from(bounds.local_sigmas[i].map(|sigma| sigma.powi(-2)));
-            let own = block.own_right + weights.component_mul(&Vector3::from(at.local[i]));
-            let definite = (block.own + Matrix3::from_diagonal(&weights)).cholesky();
-            let inverse = definite.ok_or(SensingError::Singular { trial: i })?.inverse();
-            Ok((block, inverse, own))
+            let own = products.fixed_view::<LOCAL, LOCAL>(0, 0) + Matrix3::from_diagonal(&weights);
+            let inverse = own.cholesky().ok_or(SensingError::Singular { trial: i })?.inverse();
+            let right = products.fixed_view::<LOCAL, 1>(0, LOCAL + count);
+            let right = right + weights.component_mul(&Vector3::from(at.local[i]));
+            Ok((products, inverse, right))
         })?;
-        for (block, inverse, own) in
-            blocks.iter().zip(self.train).filter_map(|(block, train)| block.as_ref().filter(|_| *train))
-        {
-            let reduced = block.by_shared.transpose() * inverse;
-            normal += &block.shared - &reduced * &block.by_shared;
-            right -= &block.shared_right - &reduced * own;
+        let by_shared = |products: &DMatrix<f64>| products.view((0, LOCAL), (LOCAL, count)).into_owned();
+        for (block, _) in blocks.iter().zip(self.train).filter(|(_, train)| **train) {
+            let Some((products, inverse, own)) = block else { continue };
+            let by_shared = by_shared(products);
+            let reduced = by_shared.transpose() * inverse;
+            normal += products.view((LOCAL, LOCAL), (count, count)) - &reduced * by_shared;
+            right -= products.view((LOCAL, LOCAL + count), (count, 1)) - reduced * own;
         }
         let change = normal.lu().solve(&right).ok_or(SensingError::SharedSingular)?;
         let mut next = at.clone();
@@ -114,9 +110,9 @@ impl Problem<'_> {
             *value = (*value + change[k]).clamp(bounds.shared_low[k], bounds.shared_high[k]);
         }
         for (i, block) in blocks.iter().enumerate() {
-            let Some((block, inverse, own)) = block else { continue };
-            let moved = inverse * (own + &block.by_shared * &change);
-            for k in 0..3 {
+            let Some((products, inverse, own)) = block else { continue };
+            let moved = inverse * (own + by_shared(products) * &change);
+            for k in 0..LOCAL {
                 let most = bounds.local_bounds[i][k];
                 next.local[i][k] = (at.local[i][k] - moved[k]).clamp(-most, most);
             }
@@ -124,62 +120,33 @@ impl Problem<'_> {
         Ok(next)
     }
 
-    fn normal(&self, trial: &Measured, path: &Path, outcomes: &[[f64; 2]], local: &[f64; 3], shared: &[f64]) -> Normal {
-        let (off, count) = (&shared[CAMERA..], shared.len());
-        let mut rows = trial.linearised(path, outcomes, local, &Camera::new(shared[0], shared[1]));
-        for (row, by) in rows.iter_mut().zip(trial.tolerance()) {
-            row[5] -= dot(by, off);
-        }
-        // One trial that the model cannot follow must not turn the camera of all.
-        let lost = rows[..trial.tracked()].iter().map(|row| huber(row[5])).sum();
-        let weight = weight(lost, trial.whole());
-        // By the trial's own, the camera's, and the difference; then these by the nominal numbers, and the latter by themselves.
-        let mut sensor = [[0.0; 6]; 6];
-        let mut by_number = DMatrix::zeros(6, count - CAMERA);
-        let mut numbers = DMatrix::zeros(count - CAMERA, count - CAMERA);
-        for (row, by) in rows.iter().zip(trial.tolerance()) {
-            add(&mut sensor, row);
+    /// The products of all columns with each other: the derivatives by the trial's own nuisances and by what all share, and
+    /// the differences.
+    fn products(
+        &self,
+        trial: &Measured,
+        path: &Path,
+        outcomes: &[[f64; 2]],
+        local: &[f64; LOCAL],
+        shared: &[f64],
+    ) -> DMatrix<f64> {
+        let off = &shared[CAMERA..];
+        let linear = trial.linearised(path, outcomes, local, &Camera::new(shared[0], shared[1]));
+        let [sensor, wrong] = [LOCAL + CAMERA, LOCAL + shared.len()];
+        let mut rows = DMatrix::zeros(linear.len(), wrong + 1);
+        for (r, (row, by)) in linear.iter().zip(trial.tolerance()).enumerate() {
+            for (k, derivative) in row[..sensor].iter().enumerate() {
+                rows[(r, k)] = *derivative;
+            }
             if !self.held {
-                for (k, b) in by.iter().enumerate() {
-                    for (n, r) in row.iter().enumerate() {
-                        by_number[(n, k)] -= r * b;
-                    }
-                    for (l, c) in by[..=k].iter().enumerate() {
-                        numbers[(k, l)] += b * c;
-                    }
+                for (k, change) in by.iter().enumerate() {
+                    rows[(r, sensor + k)] = -change;
                 }
             }
+            rows[(r, wrong)] = row[sensor] - dot(by, off);
         }
-        numbers.fill_upper_triangle_with_lower_triangle();
-        let sensor = weight * DMatrix::from_fn(6, 6, |r, c| sensor[r.max(c)][r.min(c)]);
-        by_number *= weight;
-        let mut by_shared = DMatrix::zeros(3, count);
-        by_shared.columns_mut(0, CAMERA).copy_from(&sensor.view((0, 3), (3, CAMERA)));
-        by_shared.columns_mut(CAMERA, count - CAMERA).copy_from(&by_number.rows(0, 3));
-        let mut all = DMatrix::zeros(count, count);
-        all.view_mut((0, 0), (CAMERA, CAMERA)).copy_from(&sensor.view((3, 3), (CAMERA, CAMERA)));
-        all.view_mut((0, CAMERA), (CAMERA, count - CAMERA)).copy_from(&by_number.rows(3, CAMERA));
-        all.view_mut((CAMERA, 0), (count - CAMERA, CAMERA)).copy_from(&by_number.rows(3, CAMERA).transpose());
-        all.view_mut((CAMERA, CAMERA), (count - CAMERA, count - CAMERA)).copy_from(&(weight * numbers));
-        let mut shared_right = DVector::zeros(count);
-        shared_right.rows_mut(0, CAMERA).copy_from(&sensor.view((3, 5), (CAMERA, 1)));
-        shared_right.rows_mut(CAMERA, count - CAMERA).copy_from(&by_number.row(5).transpose());
-        Normal {
-            own: sensor.fixed_view::<3, 3>(0, 0).into_owned(),
-            own_right: sensor.fixed_view::<3, 1>(0, 5).into_owned(),
-            by_shared,
-            shared: all,
-            shared_right,
-        }
-    }
-}
-
-/// Adds the products of a row's numbers with each other, the lower triangle.
-#[inline]
-fn add(products: &mut [[f64; 6]; 6], row: &Row) {
-    for r in 0..6 {
-        for c in 0..=r {
-            products[r][c] += row[r] * row[c];
-        }
+        // One trial that the model cannot follow must not turn the camera of all.
+        let lost = rows.column(wrong).iter().take(trial.tracked()).map(|r| huber(*r)).sum();
+        weight(lost, trial.whole()) * rows.tr_mul(&rows)
     }
 }

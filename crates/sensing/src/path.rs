@@ -1,6 +1,7 @@
 //! Poses between the rows of a run.
 
 use crate::{Pose, SensingError};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 /// How near to the last row the end of a path is read, in rows.
 pub const END_ROWS: f64 = 1e-6;
@@ -30,10 +31,12 @@ impl<'a> Path<'a> {
         let place = (time / self.interval).clamp(0.0, self.poses.len() as f64 - 1.0 - END_ROWS);
         let row = place as usize;
         let share = place - row as f64;
-        let (before, after) = (&self.poses[row], &self.poses[row + 1]);
-        let between: [f64; 7] = std::array::from_fn(|k| before[k] * (1.0 - share) + after[k] * share);
-        let [x, y, z, q @ ..] = between;
-        let norm = q.iter().map(|c| c * c).sum::<f64>().sqrt();
-        Pose { position: [x, y, z], orientation: q.map(|c| c / norm) }
+        let (before, after) = (self.poses[row], self.poses[row + 1]);
+        let quaternion = |[_, _, _, w, x, y, z]: [f64; 7]| Quaternion::new(w, x, y, z);
+        let place = |[x, y, z, ..]: [f64; 7]| Vector3::new(x, y, z);
+        Pose {
+            position: place(before).lerp(&place(after), share),
+            orientation: UnitQuaternion::new_normalize(quaternion(before).lerp(&quaternion(after), share)),
+        }
     }
 }

@@ -15,9 +15,7 @@ impl Whiten {
         let count = rows.len();
         let mut packed = Vec::with_capacity(count * (count + 1) / 2);
         for (r, row) in rows.enumerate() {
-            if row.len() != count {
-                return Err(SensingError::Rows { what: "a whitening matrix", found: row.len(), expected: count });
-            }
+            SensingError::same("a whitening matrix's columns", row.len(), count)?;
             packed.extend_from_slice(&row[..=r]);
         }
         Ok(Self { count, packed })

@@ -135,7 +135,7 @@ fn what_does_not_belong_together_is_refused() {
     let trial = measured(&path, [0.0; 3], &Camera::new(0.0, 0.0), false);
     let run = vec![Seen { path: Some(path), outcomes: vec![[1.0, 0.0]] }];
     let error = compare(&[&trial], &[run], &tolerances(1), &[true], None, true).unwrap_err();
-    assert_eq!(error.to_string(), "outcomes has 1 rows, expected 0");
+    assert_eq!(error.to_string(), "outcomes: 1 found, 0 expected");
     assert!(compare(&[&trial], &[], &tolerances(2), &[true], None, true).is_err());
     let mut negative = tolerances(1);
     negative.local_bounds[0][0] = -1e-3;
