@@ -9,7 +9,9 @@ import pytest
 
 from tumblers import InputError
 from tumblers.blind.answer import Answer, TrueCause, seal
+from tumblers.blind.forms import law_of
 from tumblers.blind.jitter import DIMENSIONS, NUMBERS, Jitter
+from tumblers.blind.law import EffectLaw
 from tumblers.blind.layout import STEADY_SIGMA
 from tumblers.blind.page import page_of, print_scores
 from tumblers.blind.records import Record, read_records
@@ -23,7 +25,7 @@ from tumblers.presets import ROBOTS, SUBSTRATES
 
 
 def answer(kind: str, *effects: tuple[str, str, dict[str, float]], sigma: float = 5.0, **changes: Any) -> Answer:
-    causes = tuple(TrueCause(name=n, form=f, parameters=p, strength_sigma=sigma) for n, f, p in effects)
+    causes = tuple(TrueCause(name=n, form=f, form_seed=None, parameters=p, strength_sigma=sigma) for n, f, p in effects)
     trials = {"a": sigma, "b": sigma, "c": 0.1}
     affected = tuple(name for name, strength in trials.items() if strength >= 1.0)
     table: dict[str, Any] = {
@@ -269,12 +271,18 @@ def test_explanations_that_foretell_the_same_do_not_differ() -> None:
         trials=(trial,),
         model=Model(magnetic_torque="midpoint"),
     )
-    longer = [effect_of("size_error", {"length_factor": 1.1, "height_factor": 1.1})]
+    longer = [EffectLaw(effect_of("size_error", {"length_factor": 1.1, "height_factor": 1.1}))]
     assert difference_sigma(data, longer, longer) == 0.0
     assert difference_sigma(data, longer, []) > 3.0
     # A world whose magnet is stronger than the lab believes: what is estimated there has it in it.
-    world, weaker = Jitter(magnetization=1.25), [effect_of("magnetization_strength", {"factor": 0.8})]
+    weak = effect_of("magnetization_strength", {"factor": 0.8})
+    world, weaker = Jitter(magnetization=1.25), [EffectLaw(weak)]
     assert difference_sigma(data, weaker, [], world) < 0.01
     assert difference_sigma(data, weaker, []) > 0.1
+    # In its other form it is another cause, and the same again from the same seed.
+    soft = [law_of(weak, 5)]
+    assert difference_sigma(data, soft, [law_of(weak, 5)]) == 0.0
+    assert difference_sigma(data, soft, weaker) > 0.01
     # A force that pulls it off the substrate cannot be compared.
-    assert difference_sigma(data, [effect_of("electrostatic_force", {"added_force_N": -1.0})], []) == float("inf")
+    lifted = [EffectLaw(effect_of("electrostatic_force", {"added_force_N": -1.0}))]
+    assert difference_sigma(data, lifted, []) == float("inf")

@@ -90,6 +90,8 @@ def test_each_other_form_changes_the_run_in_its_own_way(name: str) -> None:
             changed = max(changed, gap_m(plain, seen))
             other = max(other, gap_m(watch(scenario, [same], TIMES, solver="reduced"), seen))
     assert drawn.form != "catalogue"
+    # The answer says what its details were drawn from.
+    assert (drawn.form_seed is None, cause(name, False).form_seed) == (False, None)
     assert changed > 1e-6
     assert other > 1e-7
 

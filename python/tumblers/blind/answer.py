@@ -19,6 +19,8 @@ class TrueCause:
     ----------
     name, form
         Its name, and ``catalogue``, the name of another form, or ``outside``.
+    form_seed
+        What the details of another form were drawn from, so that it can be run again; None for the others.
     parameters
         Its numbers; those of an effect bear the keys of ``[[effect]]``.
     strength_sigma
@@ -27,6 +29,7 @@ class TrueCause:
 
     name: str
     form: str
+    form_seed: int | None
     parameters: Mapping[str, Any]
     strength_sigma: float
 

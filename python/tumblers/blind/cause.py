@@ -11,8 +11,8 @@ from ..effects.base import Effect
 from ..effects.catalogue import CATALOGUE
 from ..robot import Robot
 from ..scenario import Scenario
-from .forms import FORMS, SHAPES, scaled
-from .law import EffectLaw, Law
+from .forms import FORMS, SHAPES, law_of, scaled
+from .law import Law
 from .outside import OUTSIDE, Outside
 
 __all__ = ["CatalogueCause", "Cause", "OutsideCause"]
@@ -25,10 +25,13 @@ class Cause(ABC):
     ----------
     name, form
         The cause's name, and ``catalogue``, the name of another form, or ``outside``.
+    form_seed
+        What the details of another form are drawn from; None for the others.
     """
 
     name: str
     form: str
+    form_seed: int | None = None
 
     @abstractmethod
     def law(self, size: float) -> Law:
@@ -67,16 +70,15 @@ class CatalogueCause(Cause):
     def __init__(self, name: str, other_form: bool, scenarios: list[Scenario], rng: np.random.Generator) -> None:
         self.name = name
         self.effect = _draw(CATALOGUE[name], scenarios, rng)
-        self.form, self._form = "catalogue", None
-        self._seed = int(rng.integers(2**63))
+        self.form = "catalogue"
+        details = int(rng.integers(2**63))
         if other_form and name in FORMS:
-            self.form, self._form = FORMS[name]
+            self.form, self.form_seed = FORMS[name][0], details
 
     def law(self, size: float) -> Law:
         """Return the law of this effect in its form."""
-        effect = scaled(self.effect, size)
         # Each size of a cause has the same details.
-        return EffectLaw(effect) if self._form is None else self._form(effect, np.random.default_rng(self._seed))
+        return law_of(scaled(self.effect, size), self.form_seed)
 
     def parameters(self, size: float) -> dict[str, Any]:
         """Return the effect's parameters by their keys."""

@@ -243,7 +243,11 @@ def _measured(
         kind=kind,
         effects=tuple(
             TrueCause(
-                name=s.cause.name, form=s.cause.form, parameters=s.cause.parameters(s.size), strength_sigma=s.sigma
+                name=s.cause.name,
+                form=s.cause.form,
+                form_seed=s.cause.form_seed,
+                parameters=s.cause.parameters(s.size),
+                strength_sigma=s.sigma,
             )
             for s in sized
         ),

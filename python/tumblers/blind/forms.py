@@ -17,7 +17,7 @@ from ..field import RotatingField, TableField
 from ..scenario import Scenario
 from .law import EffectLaw, Law, State
 
-__all__ = ["FORMS"]
+__all__ = ["FORMS", "SHAPES", "law_of", "scaled"]
 
 # Lengths and times over which the other forms vary: those of a track.
 _WORKSPACE_M = 6e-3
@@ -307,3 +307,16 @@ FORMS: dict[str, tuple[str, Callable[[Effect, np.random.Generator], Law]]] = {
     "contact_compliance": ("hertzian", HertzianContact),
     "camera_calibration": ("barrel", BarrelCamera),
 }
+
+
+def law_of(effect: Effect, form_seed: int | None) -> Law:
+    """Return the law of an effect in the catalogue's form, or in its other one.
+
+    Parameters
+    ----------
+    effect
+        The effect.
+    form_seed
+        What the details of the other form are drawn from; None for the catalogue's.
+    """
+    return EffectLaw(effect) if form_seed is None else FORMS[effect.name][1](effect, np.random.default_rng(form_seed))

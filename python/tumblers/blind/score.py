@@ -12,7 +12,9 @@ from statistics import mean, median
 from typing import Any
 
 from ..errors import InputError, TumblersError
+from .forms import law_of
 from .jitter import Jitter
+from .law import EffectLaw
 from .records import Record, read_records
 from .ties import difference_sigma, effect_of
 
@@ -285,9 +287,9 @@ def _is_tie(record: Record, tie: TieCheck) -> bool:
 def _tie_sigma(folder: Path, record: Record) -> float:
     assert record.diagnosis is not None
     try:
-        truth = [effect_of(e.name, e.parameters) for e in record.answer.effects]
+        truth = [law_of(effect_of(e.name, e.parameters), e.form_seed) for e in record.answer.effects]
         chosen = [
-            effect_of(e["name"], {key: p["estimate"] for key, p in e["parameters"].items()})
+            EffectLaw(effect_of(e["name"], {key: p["estimate"] for key, p in e["parameters"].items()}))
             for e in record.diagnosis["effects"]
         ]
     except TumblersError:

@@ -14,7 +14,7 @@ from ..effects.catalogue import get
 from ..errors import TumblersError
 from .jitter import Jitter
 from .lab import Lab, Plan
-from .law import EffectLaw
+from .law import Law
 from .strength import strength
 from .world import Scene, watch
 
@@ -45,8 +45,8 @@ def effect_of(name: str, parameters: Mapping[str, float]) -> Effect:
 
 def difference_sigma(
     dataset: Dataset | str | PathLike[str],
-    first: Sequence[Effect],
-    second: Sequence[Effect],
+    first: Sequence[Law],
+    second: Sequence[Law],
     jitter: Jitter | None = None,
 ) -> float:
     """Return by how many standard deviations of the noise two explanations differ on a dataset's trials.
@@ -56,7 +56,7 @@ def difference_sigma(
     dataset
         The dataset, or its folder.
     first, second
-        The effects of each explanation.
+        The laws of each explanation.
     jitter
         How far the numbers of the world in which the first are at work are from the nominal ones; not at all if None.
 
@@ -73,8 +73,7 @@ def difference_sigma(
         return inf
 
 
-def _scenes(lab: Lab, effects: Sequence[Effect], jitter: Jitter) -> list[Scene]:
-    laws = [EffectLaw(effect) for effect in effects]
+def _scenes(lab: Lab, laws: Sequence[Law], jitter: Jitter) -> list[Scene]:
     return [watch(jitter.edit(lab.scenario(plan)), laws, lab.frames(plan), solver="reduced") for plan in lab.plans]
 
 
