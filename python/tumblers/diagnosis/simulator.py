@@ -31,8 +31,8 @@ _ROWS_PER_CYCLE = 60
 STEPS_S = (5.0e-4, 2.5e-4, 1.25e-4)
 _STEPS_PER_CYCLE = 100
 
-# Rollouts that are kept: a fit often comes back to a point.
-_MOST_KEPT = 512
+# Bytes of rollouts that are kept: a fit often comes back to a point, and the search to a fit.
+_MOST_KEPT = 256_000_000
 
 Edit = Callable[[Scenario], Scenario]
 Floats = NDArray[np.float64]
@@ -81,9 +81,9 @@ class Simulator:
         stated = "magnetic_torque" in dataset.model_given
         self.model: Model = dataset.model if stated else replace(dataset.model, magnetic_torque="midpoint")
         self.step_s = [_first_step(trial.field) for trial in dataset.trials]
-        self.rollouts = 0
         self._nominal: dict[tuple[int, float], Scenario] = {}
         self._known: OrderedDict[Scenario, tuple[_core._Rollout, int]] = OrderedDict()
+        self._kept = 0
 
     def nominal(self, trial: int, divisor: int = 1) -> Scenario:
         """Return the scenario of what the lab believes, long enough for a clock that is off by its tolerance.
@@ -221,15 +221,15 @@ class Simulator:
         every = [_rows_every(scenario) for scenario in runnable]
         with native_call("rollouts", len(trials), progress=False) as on_progress:
             results = _core.rollouts(trials, every, self.threads, on_progress)
-        self.rollouts += len(trials)
         for scenario, result, rows in zip(runnable, results, every, strict=True):
             self._known[scenario] = result, rows
+            self._kept += _size(result)
         paths = [
             None if seen is None or moved is None or moved not in self._known else self._path(seen, *self._known[moved])
             for seen, moved in zip(scenarios, moving, strict=True)
         ]
-        while len(self._known) > _MOST_KEPT:
-            self._known.popitem(last=False)
+        while self._kept > _MOST_KEPT and len(self._known) > 1:
+            self._kept -= _size(self._known.popitem(last=False)[1][0])
         return paths
 
     def _possible(self, job: Job) -> Scenario | None:
@@ -259,6 +259,10 @@ class Simulator:
             orientation=scenario.camera.seen_orientation(orientation),
             contact_mode=rollout["contact_mode"][:rows],
         )
+
+
+def _size(rollout: _core._Rollout) -> int:
+    return sum(column.nbytes for column in rollout.values() if isinstance(column, np.ndarray))
 
 
 def _first_step(field: object) -> float:

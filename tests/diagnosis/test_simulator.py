@@ -1,0 +1,60 @@
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tumblers import _core
+from tumblers.diagnosis import simulator as simulators
+from tumblers.diagnosis.simulator import Job, Simulator
+from tumblers.effects.friction_coefficient import FrictionCoefficient
+
+from .lab import plan
+
+
+def jobs(first: int, count: int) -> list[Job]:
+    return [Job(0, (FrictionCoefficient(factor=1.0 + 0.01 * k),)) for k in range(first, first + count)]
+
+
+def runs(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Count the rollouts of each batch from now on."""
+    made: list[int] = []
+    native = _core.rollouts
+
+    def rollouts(trials: list[Any], *rest: Any) -> list[Any]:
+        made.append(len(trials))
+        return list(native(trials, *rest))
+
+    monkeypatch.setattr(_core, "rollouts", rollouts)
+    return made
+
+
+def test_what_was_run_is_not_run_again_while_it_fits(monkeypatch: pytest.MonkeyPatch) -> None:
+    simulator, made = Simulator(plan(), 1), runs(monkeypatch)
+    first = simulator.run(jobs(0, 4))
+    again = simulator.run(jobs(2, 4))
+    assert made == [4, 2]
+    assert [path is not None for path in first] == [True] * 4
+    for before, after in zip(first[2:], again[:2], strict=True):
+        assert before is not None
+        assert after is not None
+        np.testing.assert_array_equal(before.position_m, after.position_m)
+
+
+def test_the_oldest_makes_room_and_comes_back_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    simulator, made = Simulator(plan(), 1), runs(monkeypatch)
+    first = simulator.run(jobs(0, 1))[0]
+    room = simulator._kept
+    assert room == sum(simulators._size(rollout) for rollout, _ in simulator._known.values())
+    monkeypatch.setattr(simulators, "_MOST_KEPT", int(3.5 * room))
+    simulator.run(jobs(1, 6))
+    assert simulator._kept <= 3.5 * room
+    assert len(simulator._known) == 3
+    back = simulator.run([*jobs(6, 1), *jobs(0, 1)])[1]
+    # The latest is still there, the oldest is not.
+    assert made == [1, 6, 1]
+    assert first is not None
+    assert back is not None
+    np.testing.assert_array_equal(first.position_m, back.position_m)
+    np.testing.assert_array_equal(first.orientation, back.orientation)
