@@ -90,6 +90,8 @@ def test_misalignment_replaces_nominal_angles() -> None:
         ("contact_compliance", {"compliance_m_per_N": 2.0}, "substrate", "compliance_m_per_N", 2.0),
         ("camera_calibration", {"scale": 1.1}, "camera", "scale", 1.1),
         ("camera_calibration", {"heading_deg": 4.0}, "camera", "heading_deg", 4.0),
+        ("camera_calibration", {"origin_m": (1e-4, -2e-4)}, "camera", "origin_m", (1e-4, -2e-4)),
+        ("camera_calibration", {"time_offset_s": 0.05}, "camera", "time_offset_s", 0.05),
     ],
 )
 def test_an_effect_edits_its_key_and_nothing_else(
@@ -282,5 +284,12 @@ def test_roughness_is_a_relief_and_adds_to_one_of_its_wavelength() -> None:
 
 
 def test_the_camera_leaves_the_motion_as_it_is() -> None:
-    run, seen = simulate(NOMINAL), simulate(edited("camera_calibration", scale=1.1, heading_deg=10.0))
+    off = {"scale": 1.1, "heading_deg": 90.0, "origin_m": (1e-4, -2e-4), "time_offset_s": 0.05}
+    run, seen = simulate(NOMINAL), simulate(edited("camera_calibration", **off))
     assert run["position_m"].values.tobytes() == seen["position_m"].values.tobytes()
+    # What it sees stands beside what happened, and nothing where it is as it should be.
+    assert "seen_position_m" not in run
+    x, y, z = seen["position_m"].values.T
+    assert_allclose(seen["seen_position_m"], np.column_stack([1e-4 - 1.1 * y, 1.1 * x - 2e-4, z]), atol=1e-15)
+    assert_allclose(seen["seen_time_s"], run["time"] - 0.05, atol=1e-15)
+    assert_allclose(np.abs(seen["seen_orientation"].values[0] @ [0.5**0.5, 0.0, 0.0, 0.5**0.5]), 1.0, rtol=1e-12)

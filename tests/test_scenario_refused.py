@@ -71,6 +71,8 @@ REFUSED = [
     ("[run]", "[light]\n[run]", "light", "unknown key"),
     ("[run]", "[camera]\nscale = 0\n[run]", "camera.scale", "greater than 0"),
     ("[run]", "[camera]\nheading_deg = nan\n[run]", "camera.heading_deg", "nan"),
+    ("[run]", "[camera]\norigin_m = [0.0]\n[run]", "camera.origin_m", "a list of 2 numbers"),
+    ("[run]", "[camera]\ntime_offset_s = 'a'\n[run]", "camera.time_offset_s", "'a'"),
     ("[run]", "[relief]\nwavelength_m = 0\n[run]", "relief.wavelength_m", "greater than 0"),
     ("[run]", "[relief]\ncosine_m = [1e-6]\n[run]", "relief.sine_m", "found 0 amplitudes, expected 1, as many as in"),
     ("[run]", "[relief]\ncosine_m = ['a']\n[run]", "relief.cosine_m[0]", "a finite number"),

@@ -177,7 +177,13 @@ SCENARIO = st.builds(
     ),
     relief=RELIEF,
     surroundings=SURROUNDINGS,
-    camera=st.builds(Camera, scale=st.floats(0.1, 2), heading_deg=st.floats(-180, 180)),
+    camera=st.builds(
+        Camera,
+        scale=st.floats(0.1, 2),
+        heading_deg=st.floats(-180, 180),
+        origin_m=st.tuples(st.floats(-1e-2, 1e-2), st.floats(-1e-2, 1e-2)),
+        time_offset_s=st.floats(-1, 1),
+    ),
     effects=NEUTRAL_EFFECTS,
 )
 

@@ -248,8 +248,9 @@ FAR: Final[float]
 CLOCK_STEP_S: Final[float]
 END_ROWS: Final[float]
 
-# The interval of a path's rows, s, and these (n, 7), or None; the outcomes' scaled differences (k, 2).
-_Seen: TypeAlias = tuple[tuple[float, _Floats] | None, _Floats]
+# The interval of a path's rows, s, its time when the camera's clock says 0, s, and the rows (n, 7), or None; the scaled
+# differences of the outcomes (k, 2).
+_Seen: TypeAlias = tuple[tuple[float, float, _Floats] | None, _Floats]
 
 @final
 class Measured:

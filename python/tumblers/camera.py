@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .check import number
+from .check import number, pair
 
 __all__ = ["Camera"]
 
@@ -24,6 +24,10 @@ class Camera:
         Length seen over true length.
     heading_deg
         Angle by which what is seen is turned about +z, from +y towards -x, degrees.
+    origin_m
+        Where the substrate's origin is seen, (x, y), m.
+    time_offset_s
+        The field's time when the camera's clock says 0, s.
 
     Raises
     ------
@@ -33,13 +37,17 @@ class Camera:
 
     scale: float = 1.0
     heading_deg: float = 0.0
+    origin_m: tuple[float, float] = (0.0, 0.0)
+    time_offset_s: float = 0.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "scale", number("camera.scale", self.scale, above=0.0))
         object.__setattr__(self, "heading_deg", number("camera.heading_deg", self.heading_deg))
+        object.__setattr__(self, "origin_m", pair("camera.origin_m", self.origin_m))
+        object.__setattr__(self, "time_offset_s", number("camera.time_offset_s", self.time_offset_s))
 
     def seen_position(self, position_m: ArrayLike) -> NDArray[np.float64]:
-        """Return positions as they are seen: x and y turned and scaled, z as it is.
+        """Return positions as they are seen: x and y turned, scaled and from another origin, z as it is.
 
         Parameters
         ----------
@@ -47,12 +55,12 @@ class Camera:
             Positions, substrate frame, m, shape (..., 3).
         """
         seen: NDArray[np.float64] = np.array(position_m, dtype=np.float64)
-        if self.scale == 1.0 and self.heading_deg == 0.0:
+        if (self.scale, self.heading_deg, *self.origin_m) == (1.0, 0.0, 0.0, 0.0):
             return seen
         x, y = seen[..., 0].copy(), seen[..., 1].copy()
         c, s = cos(radians(self.heading_deg)), sin(radians(self.heading_deg))
-        seen[..., 0] = self.scale * (c * x - s * y)
-        seen[..., 1] = self.scale * (s * x + c * y)
+        seen[..., 0] = self.scale * (c * x - s * y) + self.origin_m[0]
+        seen[..., 1] = self.scale * (s * x + c * y) + self.origin_m[1]
         return seen
 
     def seen_orientation(self, orientation: ArrayLike) -> NDArray[np.float64]:

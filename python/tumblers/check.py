@@ -11,7 +11,18 @@ import numpy as np
 
 from .errors import InputError, show
 
-__all__ = ["Vector", "choice", "direction", "number", "sequence", "text", "thread_count", "unit_quaternion", "vector"]
+__all__ = [
+    "Vector",
+    "choice",
+    "direction",
+    "number",
+    "pair",
+    "sequence",
+    "text",
+    "thread_count",
+    "unit_quaternion",
+    "vector",
+]
 
 Vector = tuple[float, float, float]
 T = TypeVar("T")
@@ -90,6 +101,12 @@ def _numbers(key: str, value: object, count: int) -> tuple[float, ...]:
     if len(found) != count:
         raise InputError(key, show(value), expected)
     return found
+
+
+def pair(key: str, value: object) -> tuple[float, float]:
+    """Return two finite numbers."""
+    x, y = _numbers(key, value, 2)
+    return x, y
 
 
 def vector(key: str, value: object) -> Vector:

@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from . import _core
+from .camera import Camera
 from .check import choice
 from .metrics import FLIP_DEG
 from .progress import OnProgress, native_call
@@ -59,7 +60,9 @@ def simulate(scenario: Scenario, solver: Solver = "reduced", progress: bool | On
     -------
     xarray.Dataset
         A row for the start, every ``output_every_s`` and the end: dimensions ``time`` (coordinate in s), ``axis``
-        (x, y, z), ``wxyz`` and ``tor`` (t, o, r), every variable with its units. Attributes: the scenario's TOML;
+        (x, y, z), ``wxyz`` and ``tor`` (t, o, r), every variable with its units. Where the camera is not as it should
+        be, ``seen_time_s``, ``seen_position_m`` and ``seen_orientation`` are what it sees. Attributes: the scenario's
+        TOML;
         ``twist_deg`` and ``drift_m`` after one cycle of the field (NaN if there is none), ``flipped``,
         ``speed_m_per_s``, ``steps``, ``unconverged_steps``, ``max_residual``, ``max_penetration_m``. Where the scenario
         left the step to be chosen: ``step_s``, ``step_error``, its error estimate as a share, and ``step_met``, whether
@@ -88,7 +91,31 @@ def simulate(scenario: Scenario, solver: Solver = "reduced", progress: bool | On
         name: (dims, run[name], {"units": units, "long_name": meaning, **_SPECIAL.get(name, {})})
         for name, (dims, units, meaning) in _VARIABLES.items()
     }
+    variables |= _seen(scenario.effective().camera, run)
     return xr.Dataset(variables, coordinates, attrs=_attributes(scenario, solver, run) | chosen)
+
+
+def _seen(camera: Camera, run: Mapping[str, Any]) -> dict[str, tuple[tuple[str, ...], Any, dict[str, str]]]:
+    """Return what a camera that is not as it should be sees of a run."""
+    if camera == Camera():
+        return {}
+    return {
+        "seen_time_s": (
+            ("time",),
+            run["time_s"] - camera.time_offset_s,
+            {"units": "s", "long_name": "what the camera's clock says"},
+        ),
+        "seen_position_m": (
+            ("time", "axis"),
+            camera.seen_position(run["position_m"]),
+            {"units": "m", "long_name": "centre of mass as the camera sees it"},
+        ),
+        "seen_orientation": (
+            ("time", "wxyz"),
+            camera.seen_orientation(run["orientation"]),
+            {"units": "1", "long_name": "unit quaternion, body to substrate, as the camera sees it"},
+        ),
+    }
 
 
 def _attributes(scenario: Scenario, solver: Solver, run: Mapping[str, Any]) -> dict[str, Any]:

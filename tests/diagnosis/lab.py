@@ -86,7 +86,7 @@ def measure(
     for path, trial in zip(paths, planned.trials, strict=True):
         assert path is not None
         time = np.arange(0.0, trial.duration_s - 0.01, 1.0 / FRAMES_PER_SECOND)
-        place, turned = path.at(time + clock_frames / FRAMES_PER_SECOND)
+        place, turned = path.at(time + path.clock_s + clock_frames / FRAMES_PER_SECOND)
         angle, way = radians(heading_deg), rng.uniform(0.0, 2.0 * np.pi)
         x, y = (
             scale * (cos(angle) * place[:, 0] - sin(angle) * place[:, 1]),

@@ -11,6 +11,7 @@ from numpy.testing import assert_allclose
 from tumblers.diagnosis import diagnose
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.floor import SHARED
+from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.predictive import mean_square
 from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects import get
@@ -58,6 +59,50 @@ def test_a_camera_that_is_off_by_more_is_the_camera() -> None:
     for key, value in (("scale", 1.02), ("heading_deg", 5.0)):
         interval = diagnosis.effects[0].parameters[key]
         assert interval.low <= value <= interval.high
+
+
+@pytest.mark.parametrize(
+    ("off", "key", "value"),
+    [
+        ({"origin_m": (0.0, 3e-4)}, "origin_m[1]", 3e-4),
+        # Two and a half frames, where half of one is the tolerance.
+        ({"time_offset_s": 2.5 / 60.0}, "time_offset_s", 2.5 / 60.0),
+        ({"time_offset_s": -2.5 / 60.0}, "time_offset_s", -2.5 / 60.0),
+    ],
+)
+def test_an_origin_and_a_clock_that_are_off_by_more_are_the_camera(
+    off: dict[str, object], key: str, value: float
+) -> None:
+    dataset = measure(plan(), (get("camera_calibration")(**off),), seed=1)
+    diagnosis = diagnose(dataset, effects=CONSIDERED, jobs=2)
+    assert diagnosis.verdict == "explained"
+    assert [effect.name for effect in diagnosis.effects] == ["camera_calibration"]
+    parameters = diagnosis.effects[0].parameters
+    assert parameters[key].low <= value <= parameters[key].high
+    # What is right is said to be so, no better than the tolerance.
+    for other in {"scale", "heading_deg", "origin_m[0]", "time_offset_s", "origin_m[1]"} - {key}:
+        neutral = 1.0 if other == "scale" else 0.0
+        assert parameters[other].low <= neutral <= parameters[other].high
+
+
+def test_where_the_tolerance_is_enough_the_camera_has_no_origin_and_no_clock() -> None:
+    dataset = measure(plan(), heading_deg=5.0, seed=1)
+    comparison = Comparison(dataset, Simulator(dataset, 1))
+    local = comparison.residual(comparison.nominal_paths).local
+    assert comparison.nuisances.enough(local) == {"clock", "origin x", "origin y"}
+    # Some trials at an end are no shift of all.
+    bound = comparison.nuisances.local_bounds[:, 1]
+    local[:, 1] = bound * [1, -1, 0, 0, 0]
+    assert "origin x" in comparison.nuisances.enough(local)
+    local[:, 1] = bound * [1, -1, 1, 0, 0]
+    assert comparison.nuisances.enough(local) == {"clock", "origin y"}
+    scenarios = [comparison.simulator.nominal(i) for i in range(len(comparison.readers))]
+    hypothesis = Hypothesis.of(get("camera_calibration"), scenarios)
+    held = hypothesis.without({"clock", "origin y"})
+    assert (hypothesis.free, held.free) == (5, 3)
+    assert len(held.starts) == 6
+    assert held.effects(np.full(5, 0.5))[0].vector()[3:] == (0.0, 0.0)
+    assert hypothesis.without(set()) is hypothesis
 
 
 @pytest.mark.parametrize("divisor", [1, 4])

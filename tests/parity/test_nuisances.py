@@ -55,7 +55,7 @@ def rigid() -> Dataset:
 CASES: dict[str, tuple[Effect, ...]] = {
     "near": (),
     "far": (get("friction_coefficient").from_vector((0.3,)),),
-    "camera": (get("camera_calibration").from_vector((1.1, 20.0)),),
+    "camera": (get("camera_calibration").from_vector((1.1, 20.0, 3e-4, -2e-4, 0.03)),),
 }
 
 
@@ -109,15 +109,16 @@ def test_what_is_no_path_is_refused() -> None:
     comparison = Comparison(off(), Simulator(off(), 1))
     (stretch, *_), path = comparison._stretches(1.0), comparison.nominal_paths[0]
     assert path is not None
-    (interval, poses), outcomes = stretch.seen(path)
+    (interval, clock, poses), outcomes = stretch.seen(path)
     local, shared = [0.0] * 3, [0.0] * (2 + SHARED)
     for run, words in (
-        (((interval, poses[:1]), outcomes), "1 poses"),
-        (((0.0, poses), outcomes), "0 s apart"),
-        (((interval, poses[:, :6].copy()), outcomes), "6 numbers a row, expected 7"),
-        (((interval, np.asfortranarray(poses)), outcomes), "row after row"),
-        (((interval, poses), outcomes[:, :1].copy()), "1 numbers a row, expected 2"),
-        (((interval, poses), outcomes[:0]), "outcomes and shared have 0 and 11 numbers"),
+        (((interval, clock, poses[:1]), outcomes), "1 poses"),
+        (((0.0, clock, poses), outcomes), "0 s apart"),
+        (((interval, float("nan"), poses), outcomes), "a path's clock"),
+        (((interval, clock, poses[:, :6].copy()), outcomes), "6 numbers a row, expected 7"),
+        (((interval, clock, np.asfortranarray(poses)), outcomes), "row after row"),
+        (((interval, clock, poses), outcomes[:, :1].copy()), "1 numbers a row, expected 2"),
+        (((interval, clock, poses), outcomes[:0]), "outcomes and shared have 0 and 11 numbers"),
         ((None, outcomes), "not run"),
     ):
         with pytest.raises(ValueError, match=words):

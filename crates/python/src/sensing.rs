@@ -11,8 +11,10 @@ use std::thread::available_parallelism;
 
 /// One channel: its name, times, measured numbers or quaternions, and the matrix that whitens it.
 type PyColumn<'py> = (String, PyReadonlyArray1<'py, f64>, PyReadonlyArray2<'py, f64>, PyReadonlyArray2<'py, f64>);
-/// One trial of a run: the interval of its rows and these, or none, and the outcomes' scaled differences.
-type PySeen<'py> = (Option<(f64, PyReadonlyArray2<'py, f64>)>, PyReadonlyArray2<'py, f64>);
+/// A path: the interval of its rows, its time when the sensor's clock says 0, and the rows.
+type PyPath<'py> = (f64, f64, PyReadonlyArray2<'py, f64>);
+/// One trial of a run: its path, or none, and the outcomes' scaled differences.
+type PySeen<'py> = (Option<PyPath<'py>>, PyReadonlyArray2<'py, f64>);
 /// Clocks and origins, what all share, and the whitened differences.
 type PyCompared<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>, Vec<Option<Bound<'py, PyArray1<f64>>>>);
 
@@ -129,14 +131,14 @@ pub fn compare<'py>(
 }
 
 fn seen<'a>(
-    path: Option<&'a (f64, PyReadonlyArray2<'_, f64>)>,
+    path: Option<&'a PyPath<'_>>,
     outcomes: &PyReadonlyArray2<'_, f64>,
 ) -> PyResult<Seen<'a>> {
     let path = path
-        .map(|(interval, poses)| {
+        .map(|(interval, clock, poses)| {
             width("a path's poses", poses, 7)?;
             let rows = poses.as_array().to_slice().ok_or_else(|| refused("a path's poses are not row after row"))?;
-            Path::new(*interval, rows.as_chunks::<7>().0).map_err(refused)
+            Path::new(*interval, *clock, rows.as_chunks::<7>().0).map_err(refused)
         })
         .transpose()?;
     width("outcomes", outcomes, 2)?;

@@ -10,25 +10,29 @@ pub const END_ROWS: f64 = 1e-6;
 #[derive(Debug, Clone, Copy)]
 pub struct Path<'a> {
     interval: f64,
+    clock: f64,
     poses: &'a [[f64; 7]],
 }
 
 impl<'a> Path<'a> {
-    /// A path whose rows are `interval` apart.
-    pub fn new(interval: f64, poses: &'a [[f64; 7]]) -> Result<Self, SensingError> {
+    /// A path whose rows are `interval` apart, and whose time is `clock` when the sensor's clock says 0.
+    pub fn new(interval: f64, clock: f64, poses: &'a [[f64; 7]]) -> Result<Self, SensingError> {
         if poses.len() < 2 {
             return Err(SensingError::Poses { found: poses.len() });
         }
         if interval.is_nan() || interval <= 0.0 {
             return Err(SensingError::Interval { found: interval });
         }
-        Ok(Self { interval, poses })
+        if !clock.is_finite() {
+            return Err(SensingError::Number { what: "a path's clock", found: clock });
+        }
+        Ok(Self { interval, clock, poses })
     }
 
-    /// The pose at a time, the ends held.
+    /// The pose at a time of the sensor's clock, the ends held.
     #[inline]
     pub fn at(&self, time: f64) -> Pose {
-        let place = (time / self.interval).clamp(0.0, self.poses.len() as f64 - 1.0 - END_ROWS);
+        let place = ((time + self.clock) / self.interval).clamp(0.0, self.poses.len() as f64 - 1.0 - END_ROWS);
         let row = place as usize;
         let share = place - row as f64;
         let (before, after) = (self.poses[row], self.poses[row + 1]);

@@ -65,7 +65,7 @@ proptest! {
         turn in -0.5..0.5f64, quaternions: bool,
     ) {
         let rows = poses(turn);
-        let path = Path::new(INTERVAL, &rows).unwrap();
+        let path = Path::new(INTERVAL, 0.0, &rows).unwrap();
         let trial = measured(&path, [1e-3, 1e-5, -1e-5], &Camera::new(0.01, 1e-3), quaternions);
         let local = [clock, x, -x];
         let wrong = |local: [f64; 3], heading, scale| trial.whitened(&path, &[], &local, &[heading, scale, 0.0]);
@@ -92,7 +92,7 @@ proptest! {
         heading in -0.03..0.03f64, scale in -4e-3..4e-3f64, quaternions: bool,
     ) {
         let rows = [poses(0.2), poses(-0.3)];
-        let paths = [Path::new(INTERVAL, &rows[0]).unwrap(), Path::new(INTERVAL, &rows[1]).unwrap()];
+        let paths = [Path::new(INTERVAL, 0.0, &rows[0]).unwrap(), Path::new(INTERVAL, 0.0, &rows[1]).unwrap()];
         let camera = Camera::new(heading, scale);
         let trials = paths.map(|path| measured(&path, [clock, x, y], &camera, quaternions));
         let run = || paths.map(|path| Seen { path: Some(path), outcomes: Vec::new() }).to_vec();
@@ -115,7 +115,7 @@ proptest! {
 #[test]
 fn a_trial_that_was_not_run_has_no_differences_and_moves_no_other() {
     let rows = poses(0.2);
-    let path = Path::new(INTERVAL, &rows).unwrap();
+    let path = Path::new(INTERVAL, 0.0, &rows).unwrap();
     let trial = measured(&path, [2e-3, 1e-5, 0.0], &Camera::new(0.02, 2e-3), false);
     let ran = || Seen { path: Some(path), outcomes: Vec::new() };
     let missing = || Seen { path: None, outcomes: Vec::new() };
@@ -129,9 +129,10 @@ fn a_trial_that_was_not_run_has_no_differences_and_moves_no_other() {
 #[test]
 fn what_does_not_belong_together_is_refused() {
     let rows = poses(0.0);
-    assert!(Path::new(INTERVAL, &rows[..1]).is_err());
-    assert!(Path::new(0.0, &rows).is_err());
-    let path = Path::new(INTERVAL, &rows).unwrap();
+    assert!(Path::new(INTERVAL, 0.0, &rows[..1]).is_err());
+    assert!(Path::new(0.0, 0.0, &rows).is_err());
+    assert!(Path::new(INTERVAL, f64::NAN, &rows).is_err());
+    let path = Path::new(INTERVAL, 0.0, &rows).unwrap();
     let trial = measured(&path, [0.0; 3], &Camera::new(0.0, 0.0), false);
     let run = vec![Seen { path: Some(path), outcomes: vec![[1.0, 0.0]] }];
     let error = compare(&[&trial], &[run], &tolerances(1), &[true], None, true).unwrap_err();

@@ -92,13 +92,12 @@ def watch(
 
 def _watch(scenario: Scenario, laws: Sequence[Law], times_s: NDArray[np.float64], trial: int, solver: Solver) -> Scene:
     h = scenario.run.fixed_step_s
-    frames = np.maximum(times_s, 0.0)
+    # A camera whose clock is off looks at other times.
+    frames = np.maximum(times_s + _settled(scenario, laws, trial).camera.time_offset_s, 0.0)
     first = np.floor(frames / h * (1.0 + 1e-12)).astype(int)
     last = int(first[-1]) + 1
     scenario = replace(scenario, run=replace(scenario.run, duration_s=last * h, output_every_s=None))
-    for law in laws:
-        scenario = law.settle(scenario, trial)
-    scenario = scenario.effective()
+    scenario = _settled(scenario, laws, trial)
     exchanging = [law for law in laws if law.every > 0]
     every = min((law.every for law in exchanging), default=last)
     stops = np.unique(np.concatenate([first, first + 1, np.arange(0, last, every), [last]]))
@@ -126,6 +125,12 @@ def _watch(scenario: Scenario, laws: Sequence[Law], times_s: NDArray[np.float64]
         orientation=_normalised(before.orientation + share * (after.orientation - before.orientation)),
     )
     return Scene(times_s, between, before, after, h, converged)
+
+
+def _settled(scenario: Scenario, laws: Sequence[Law], trial: int) -> Scenario:
+    for law in laws:
+        scenario = law.settle(scenario, trial)
+    return scenario.effective()
 
 
 def _start(scenario: Scenario) -> State:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import hypot
 from typing import Literal, get_args
 
-from ..check import choice, number, sequence
+from ..check import choice, number, pair
 from ..errors import InputError, show
 
 __all__ = ["TYPICAL_ANGLE_NOISE_DEG", "TYPICAL_POSITION_NOISE_M", "Pixel", "Sensor", "TrackedPoint"]
@@ -77,7 +77,7 @@ class Sensor:
         put("heading_tolerance_deg", heading)
         put("scale_tolerance", number("sensor.scale_tolerance", self.scale_tolerance, least=0.0, below=1.0))
         if self.origin_px is not None:
-            put("origin_px", _pixel("sensor.origin_px", self.origin_px))
+            put("origin_px", pair("sensor.origin_px", self.origin_px))
         put("y_axis_px", _direction("sensor.y_axis_px", self.y_axis_px))
         choice("sensor.tracked_point", self.tracked_point, get_args(TrackedPoint))
 
@@ -88,16 +88,8 @@ class Sensor:
         return -down, right
 
 
-def _pixel(key: str, value: object) -> Pixel:
-    expected = "a list of 2 numbers"
-    found = sequence(key, value, expected, number)
-    if len(found) != 2:
-        raise InputError(key, show(value), expected)
-    return found[0], found[1]
-
-
 def _direction(key: str, value: object) -> Pixel:
-    x, y = _pixel(key, value)
+    x, y = pair(key, value)
     scale = max(abs(x), abs(y))
     if scale == 0.0:
         raise InputError(key, show(value), "a direction that is not zero")

@@ -157,7 +157,7 @@ def _ranked(
         )
         likelihood = -0.5 * (c.total + (alike - 1.0) * outcomes) / dispersion
         evidence = likelihood + prior[len(c.names)]
-        evidence -= _PER_PARAMETER * len(c.point) + _PER_PLACE * sum(place[name] for name in c.names)
+        evidence -= _PER_PARAMETER * c.free + _PER_PLACE * sum(place[name] for name in c.names)
         if c.fit is not None:
             information = c.fit.information(dispersion) * PRIOR_SIGMA**2
             evidence -= 0.5 * float(np.linalg.slogdet(information)[1])

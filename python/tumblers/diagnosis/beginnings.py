@@ -48,7 +48,7 @@ def from_beginnings(fitter: Fitter, contender: Contender, possible: Sequence[Hyp
     hypothesis = contender.fit.hypothesis
     point = (
         _followed(fitter, contender, possible, tracked)
-        if len(contender.point) > MANY
+        if contender.free > MANY
         else _staged(fitter, hypothesis, _sampled(fitter, contender, seed, tracked)[1], tracked)
     )
     fit = fitter.fit(hypothesis, point, evaluations=_LAST_POINTS)
@@ -87,7 +87,7 @@ def _sampled(fitter: Fitter, contender: Contender, seed: int, tracked: tuple[int
     assert contender.fit is not None
     hypothesis = contender.fit.hypothesis
     low, high = hypothesis.low, hypothesis.high
-    more = int(np.sum(high > low) > 1)
+    more = int(hypothesis.free > 1)
     sobol = qmc.Sobol(1 + len(low), rng=np.random.default_rng(seed))
     even = low + sobol.random(_EVEN[more])[:, 1:] * (high - low)
     drawn = sobol.random(_BY_DECADE[more])
@@ -124,7 +124,7 @@ def _followed(fitter: Fitter, contender: Contender, possible: Sequence[Hypothesi
 def _starts_within(contender: Contender, possible: Sequence[Hypothesis]) -> list[Floats]:
     """Return a contender's point with the effect that has most parameters at each of its close starts."""
     kinds = [next(h for h in possible if h.names == (name,)) for name in contender.names]
-    most = max(range(len(kinds)), key=lambda n: len(kinds[n].neutral))
+    most = max(range(len(kinds)), key=lambda n: kinds[n].free)
     first = sum(len(h.neutral) for h in kinds[:most])
     points = []
     for start in kinds[most].close:

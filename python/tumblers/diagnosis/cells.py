@@ -92,7 +92,7 @@ class Cells:
                 first += len(times)
                 outcome = place >= tracked
                 channel = _OF_OUTCOME.get(name, name)
-                clock = times + residual.local[i, 0]
+                clock = times + residual.local[i, 0] + (path.clock_s if path is not None else 0.0)
                 where = np.full((len(times), 2), np.nan)
                 mode = np.full(len(times), -1.0)
                 if path is not None and not outcome and len(times):

@@ -64,6 +64,11 @@ class Contender:
         return np.empty(0) if self.fit is None else self.fit.point
 
     @property
+    def free(self) -> int:
+        """How many parameters were fitted."""
+        return 0 if self.fit is None else self.fit.hypothesis.free
+
+    @property
     def total(self) -> float:
         """-2 ln likelihood, but for what is the same for all: what contenders are compared by."""
         return self.cost + self.log_determinant + self.step_credit

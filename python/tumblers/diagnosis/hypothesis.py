@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..effects.base import Effect
+from ..effects.parameter import Nuisance
 from ..scenario import Scenario
 
 __all__ = ["PRIOR_SIGMA", "Hypothesis"]
@@ -81,6 +82,26 @@ class Hypothesis:
         }
         starts, close = (np.hstack([np.zeros((len(s), len(self.neutral))), s]) for s in (other.starts, other.close))
         return Hypothesis(self.kinds + other.kinds, starts=starts, close=close, **joined)
+
+    @property
+    def free(self) -> int:
+        """How many coordinates have a range."""
+        return int(np.sum(self.high > self.low))
+
+    def without(self, nuisances: Collection[Nuisance]) -> Hypothesis:
+        """Return the hypothesis with the parameters at neutral that do what these nuisances do within their tolerances.
+
+        Parameters
+        ----------
+        nuisances
+            Of the sensor.
+        """
+        held = np.array([p.beyond in nuisances for kind in self.kinds for p in kind.parameters])
+        if not held.any():
+            return self
+        low, high = np.where(held, 0.0, self.low), np.where(held, 0.0, self.high)
+        starts, close = (those[~np.any(those[:, held] != 0.0, axis=1)] for those in (self.starts, self.close))
+        return replace(self, low=low, high=high, starts=starts, close=close)
 
     @property
     def names(self) -> tuple[str, ...]:

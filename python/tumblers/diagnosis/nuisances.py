@@ -16,13 +16,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import radians
-from typing import NamedTuple
+from typing import NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
 from ..dataset import Sensor
+from ..effects.parameter import Nuisance
 from ..progress import native_call
 from .floor import SHARED
 from .pose import Path
@@ -33,6 +34,8 @@ __all__ = ["Fitted", "NuisanceFit"]
 
 Floats = NDArray[np.float64]
 
+# A nuisance is at its end beyond this share of its tolerance.
+_AT_END = 0.99
 # A nominal number is not off by more than so many tolerances.
 _MOST_OFF = 3.0
 # A tolerance is two standard deviations; a clock's offset is uniform within it.
@@ -71,6 +74,8 @@ class NuisanceFit:
 
     Attributes
     ----------
+    tracked
+        Which trials have tracks, shape (trials,).
     local_bounds
         Tolerances of each trial's clock (s) and origin (m), shape (trials, 3).
     local_sigmas
@@ -83,6 +88,7 @@ class NuisanceFit:
 
     def __init__(self, sensor: Sensor, readers: Sequence[Reader], threads: int = 0) -> None:
         self.threads = threads
+        self.tracked = np.array([len(reader.observed.time_s) > 0 for reader in readers], dtype=np.bool_)
         self.local_bounds = np.empty((len(readers), 3))
         for i, reader in enumerate(readers):
             clock = 0.5 * reader.observed.frame_interval_s if sensor.time_offset_s is None else sensor.time_offset_s
@@ -94,6 +100,29 @@ class NuisanceFit:
         most = np.concatenate([camera, np.full(SHARED - 1, _MOST_OFF)])
         self.shared_bounds = np.append(-most, 0.0), np.append(most, 1.0)
         self.shared_sigmas = np.concatenate([np.maximum(_CAMERA_SIGMA * camera, 1e-12), np.ones(SHARED)])
+
+    def enough(self, local: Floats) -> set[Nuisance]:
+        """Return the nuisances of the trials whose tolerances are enough, most trials' not being at an end.
+
+        Parameters
+        ----------
+        local
+            Clock (s) and origin (m) by trial as they were fitted, shape (trials, 3).
+        """
+        # At either one: where the truth is far, a motion that repeats has its best now at this end, now at that.
+        ends = (np.abs(local) >= _AT_END * self.local_bounds)[self.tracked]
+        return {name for name, end in zip(get_args(Nuisance), ends.T, strict=True) if end.sum() <= 0.5 * len(ends)}
+
+    def tolerance(self, nuisance: Nuisance) -> float:
+        """Return the greatest tolerance of a nuisance over the trials, s or m; 0 without tracks.
+
+        Parameters
+        ----------
+        nuisance
+            Its name.
+        """
+        bounds = self.local_bounds[self.tracked, get_args(Nuisance).index(nuisance)]
+        return float(np.max(bounds, initial=0.0))
 
     def fitted(
         self,

@@ -29,12 +29,15 @@ class Path:
         Unit quaternions w, x, y, z, body to substrate, shape (n, 4), of one sign along the path.
     contact_mode
         0 airborne, 1 point, 2 line, 3 surface, shape (n,).
+    clock_s
+        The field's time when the camera's clock says 0, s.
     """
 
     interval_s: float
     position_m: Floats
     orientation: Floats
     contact_mode: NDArray[np.int8]
+    clock_s: float = 0.0
 
     def at(self, time_s: Floats) -> tuple[Floats, Floats]:
         """Return positions (k, 3) and unit quaternions (k, 4) at times (k,), the ends held.
@@ -42,7 +45,7 @@ class Path:
         Parameters
         ----------
         time_s
-            Times, s.
+            Times of the field, s.
         """
         place = np.clip(time_s / self.interval_s, 0.0, len(self.position_m) - 1.0 - _core.END_ROWS)
         row = place.astype(np.intp)
@@ -57,7 +60,7 @@ class Path:
         return np.hstack([self.position_m, self.orientation])
 
     def mode_at(self, time_s: Floats) -> NDArray[np.int8]:
-        """Return the contact mode at times (k,), s."""
+        """Return the contact mode at times of the field (k,), s."""
         row = np.clip(np.rint(time_s / self.interval_s), 0, len(self.contact_mode) - 1).astype(np.intp)
         return self.contact_mode[row]
 

@@ -182,7 +182,8 @@ class Reader:
         count = len(time)
         if not count:
             return {}
-        position, orientation = path.at(np.concatenate([time, time + _core.CLOCK_STEP_S]) + local[0])
+        clock = path.clock_s + local[0]
+        position, orientation = path.at(np.concatenate([time, time + _core.CLOCK_STEP_S]) + clock)
         wrong = self._wrong(*_through(position, orientation, local, camera), 2)
         position, orientation = position[:count], orientation[:count]
         turned = self.observed.orientation is not None
@@ -242,7 +243,7 @@ def seen_by(path: Path, time_s: Floats, local: Floats, camera: Floats) -> tuple[
     camera
         Heading (rad) and scale, shape (2,).
     """
-    return _through(*path.at(time_s + local[0]), local, camera)
+    return _through(*path.at(time_s + (path.clock_s + local[0])), local, camera)
 
 
 def _through(position: Floats, orientation: Floats, local: Floats, camera: Floats) -> tuple[Floats, Floats]:

@@ -92,6 +92,8 @@ class Search:
         """Return the nominal model and what was fitted, those that count against their own noise or the best's."""
         self.fitter.take_likeliest_noise(())
         nominal = of_nominal(self.fitter)
+        enough = self.comparison.nuisances.enough(nominal.residual.local)
+        self.possible = [hypothesis.without(enough) for hypothesis in self.possible]
         singles = self._singles(nominal)
         if not singles or singles[0].total > nominal.total - self.worth:
             return [nominal, *singles]
@@ -152,11 +154,11 @@ class Search:
         if self._is_wanting(made[0]):
             self.tell("points over the whole range", _REFINED, _REFINED)
             self.fitter.take_likeliest_noise(made[0].effects)
-            few = [k for k, c in enumerate(made) if len(c.point) <= MANY and c.names not in refined]
+            few = [k for k, c in enumerate(made) if c.free <= MANY and c.names not in refined]
             promises = {k: promise(self.fitter, made[k], self.seed) for k in few}
             promising = sorted(few, key=lambda k: -promises[k])[:_PROMISING]
             for k, contender in enumerate(made):
-                many = len(contender.point) > MANY and contender.names != singles[0].names
+                many = contender.free > MANY and contender.names != singles[0].names
                 if many or (k in promising and promises[k] > CLEAR):
                     made[k] = from_beginnings(self.fitter, contender, self.possible, self.seed)
         return likeliest_first(made)
@@ -244,7 +246,7 @@ class Search:
         made = list(contenders)
         for k, contender in enumerate(made[:count]):
             self.tell("points over the whole range", k, count)
-            if k == 0 or len(contender.point) <= MANY:
+            if k == 0 or contender.free <= MANY:
                 made[k] = from_beginnings(self.fitter, contender, self.possible, self.seed)
         return likeliest_first(made)
 

@@ -6,7 +6,7 @@ from collections import OrderedDict
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from math import inf
+from math import ceil, inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,8 @@ _ROWS_PER_CYCLE = 60
 STEPS_S = (5.0e-4, 2.5e-4, 1.25e-4)
 _STEPS_PER_CYCLE = 100
 
+# Time by which runs are made longer for a camera whose clock is late, s.
+_PIECE_S = 0.1
 # Bytes of rollouts that are kept: a fit often comes back to a point, and the search to a fit.
 _MOST_KEPT = 256_000_000
 
@@ -128,6 +130,11 @@ class Simulator:
         if job.share < 1.0:
             shorter = max(job.share * scenario.run.duration_s, 2.0 * _LONGEST_INTERVAL_S)
             scenario = replace(scenario, run=replace(scenario.run, duration_s=shorter))
+        late = scenario.camera.time_offset_s
+        if late > 0.0 and not isinstance(scenario.field, TableField):
+            # In even pieces, so that a clock that is fitted does not ask for another run at every step.
+            longer = scenario.run.duration_s + _PIECE_S * ceil(late / _PIECE_S)
+            scenario = replace(scenario, run=replace(scenario.run, duration_s=longer))
         return scenario
 
     def coarse(self, scenario: Scenario) -> Scenario:
@@ -258,6 +265,7 @@ class Simulator:
             position_m=scenario.camera.seen_position(position),
             orientation=scenario.camera.seen_orientation(orientation),
             contact_mode=rollout["contact_mode"][:rows],
+            clock_s=scenario.camera.time_offset_s,
         )
 
 

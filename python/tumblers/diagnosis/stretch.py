@@ -82,7 +82,7 @@ class Stretch:
             terms, by_scale = self.reader.outcome_lines(path)
             for line, (name, scale) in zip(lines, self.floor.outcome_scale.items(), strict=True):
                 line[:] = scale * terms[name], scale * by_scale.get(name, 0.0)
-        return (path.interval_s, path.poses), lines
+        return (path.interval_s, path.clock_s, path.poses), lines
 
     def whitened(self, path: Path, local: Floats, shared: Floats) -> Floats:
         """Return the whitened differences of the whole trial, 0 for what is not compared, shape (n,).

@@ -43,7 +43,7 @@ def beyond_thresholds(fitter: Fitter, hypothesis: Hypothesis, nominal: Residual)
         How wrong the nominal model is.
     """
     count = len(hypothesis.neutral)
-    if count > _FEW:
+    if hypothesis.free > _FEW:
         return []
     # By number: a robot that soon leaves the view says little, but may be farther off than any.
     off = [fitter.trial_cost(nominal, i) / max(fitter.comparison.sizes[i], 1) for i in fitter.trials]

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import asinh, sinh
+from typing import Literal
 
-__all__ = ["Parameter"]
+__all__ = ["Nuisance", "Parameter"]
+
+# What of each trial's sensor is fitted in every hypothesis.
+Nuisance = Literal["clock", "origin x", "origin y"]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -30,6 +34,9 @@ class Parameter:
         Whether it is an angle in degrees that comes back to itself after 360.
     fine
         Where the range spans decades: the size c from which on a fit moves in its logarithm, by asinh(c / fine).
+    beyond
+        Which of the sensor's nuisances does the same to each trial within its tolerance, if any does: a diagnosis
+        searches the parameter where that tolerance is not enough.
     """
 
     key: str
@@ -42,6 +49,7 @@ class Parameter:
     above: float | None = None
     turns: bool = False
     fine: float | None = None
+    beyond: Nuisance | None = None
 
     @property
     def field(self) -> str:
