@@ -83,6 +83,15 @@ def test_the_image_axes(tmp_path: Path, y_axis: list[float], x: float, y: float)
     np.testing.assert_allclose(track.channels["y_m"], [np.nan, 0, y * 1e-5], atol=1e-15)
 
 
+def test_without_the_start_the_origin_has_to_be_stated(tmp_path: Path) -> None:
+    late = "frame,x,y\n0,,\n1,,\n2,7,7\n3,10,8\n"
+    with pytest.raises(InputError, match=r"^sensor\.origin_px: found no such key, expected .* at 0\.04 s, when it has"):
+        read(tmp_path, late)
+    assert read(tmp_path, late, origin_px=[7, 7]).channels["x_m"][3] == pytest.approx(3e-5)
+    # A robot that is never seen has left no start.
+    assert np.isnan(read(tmp_path, "frame,x,y\n0,,\n1,,\n").channels["x_m"]).all()
+
+
 def test_a_stated_origin_is_kept(tmp_path: Path) -> None:
     track = read(tmp_path, "time_s,x_px,y_px\n0.1,7,7\n", origin_px=[6, 9])
     assert (track.channels["x_m"][0], track.channels["y_m"][0]) == pytest.approx((1e-5, 2e-5))
@@ -122,6 +131,9 @@ REFUSED = [
     ("frame,x,y\n0.5,0,0\n", "t.csv line 2: frame '0.5', expected a whole number"),
     ("frame,x,y,particle\n0,0,0,1\n0,0,0,2\n", "the particles ['1', '2'], expected the rows of a single one"),
     ("frame,x,y\n0,1,\n", "t.csv line 2: y nothing beside the other, expected both pixels or none"),
+    ("time_s,x_m\n0,1_0e-6\n", "t.csv line 2: x_m '1_0e-6', expected a finite number"),
+    ("time_s,x_m\n0,１\n", "t.csv line 2: x_m '１', expected a finite number"),
+    ("time_s,tilt_deg\n0,90.5\n0.1,-95\n0.2,181\n", "t.csv line 4: tilt_deg 181 degrees, expected the angle above"),
     ("time_s,qw,qx,qy,qz\n0,1,,0,0\n", "t.csv line 2: qx nothing beside the others, expected a whole quaternion"),
     ("time_s,qw,qx,qy,qz\n0,1,0,0,0\n1,1,1,0,0\n", "t.csv line 3: qw a quaternion of length 1.414, expected length 1"),
     ('time_s,x_m\n0,"1\n', "t.csv: unexpected end of data, expected a CSV file"),

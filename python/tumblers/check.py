@@ -14,6 +14,7 @@ from .errors import InputError, show
 __all__ = [
     "Vector",
     "choice",
+    "decimal",
     "direction",
     "number",
     "pair",
@@ -101,6 +102,19 @@ def _numbers(key: str, value: object, count: int) -> tuple[float, ...]:
     if len(found) != count:
         raise InputError(key, show(value), expected)
     return found
+
+
+def decimal(text: str) -> float:
+    """Return the number that a cell of a table holds.
+
+    Raises
+    ------
+    ValueError
+        Anything that other readers of tables would not take for one: Python also knows ``1_0`` and other scripts.
+    """
+    if "_" in text or not text.isascii():
+        raise ValueError(text)
+    return float(text)
 
 
 def pair(key: str, value: object) -> tuple[float, float]:

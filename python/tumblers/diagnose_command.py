@@ -24,7 +24,7 @@ def diagnose(
         ),
     ],
     effects: Annotated[
-        str | None,
+        list[str] | None,
         typer.Option(
             metavar="NAME,..|FILE.py",
             help="Effects to try, files of your own among them; the whole catalogue without it.",
@@ -43,6 +43,9 @@ def diagnose(
     from .diagnosis.diagnosis import FILES
 
     output_folder("--out", out, FILES)
+    strange = [name for name in FILES if (out / name).exists()] if not (out / FILES[0]).exists() else []
+    if strange:
+        raise InputError("--out", f"'{out / strange[0]}', of no diagnosis", "a folder of its own")
     if jobs is not None:
         thread_count("--jobs", jobs)
     if seed < 0:
@@ -65,11 +68,11 @@ def diagnose(
     typer.echo(f"\nreport: {out / 'report.html'}\ntime: {perf_counter() - start:.1f} s")
 
 
-def _effect_names(text: str) -> list[str]:
+def _effect_names(texts: list[str]) -> list[str]:
     from .effects.catalogue import get, load_file
 
     names: list[str] = []
-    for word in (word.strip() for word in text.split(",")):
+    for word in (word.strip() for text in texts for word in text.split(",")):
         if word.endswith(".py"):
             names += [effect.name for effect in load_file(word)]
         else:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from os import PathLike, fspath
 from typing import Self
 
-__all__ = ["InputError", "SimulationError", "TumblersError", "show", "unreadable"]
+__all__ = ["EffectError", "InputError", "SimulationError", "TumblersError", "show", "unreadable"]
 
 _LONGEST = 80
 
@@ -40,6 +40,10 @@ class TumblersError(Exception):
 
 class SimulationError(TumblersError):
     """A run that could not be carried out although its input is sound."""
+
+
+class EffectError(TumblersError):
+    """An effect of a user's own that fails when it is to edit a scenario."""
 
 
 class InputError(TumblersError, ValueError):

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from . import dataset, effects
 from .camera import Camera
-from .errors import InputError, SimulationError, TumblersError
+from .errors import EffectError, InputError, SimulationError, TumblersError
 from .field import Field, RotatingField, StaticField, TableField
 from .grid import PAPER_DRAFTS_DEG, PAPER_MAGNETIZATION_DEG
 from .initial import Initial
@@ -44,6 +44,7 @@ __all__ = [
     "Cuboid",
     "Curved",
     "Diagnosis",
+    "EffectError",
     "Ellipsoid",
     "Field",
     "Hull",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 from pathlib import Path
 
-from .check import Vector
+from .check import Vector, decimal
 from .errors import InputError, show, unreadable
 from .regular_file import read_regular
 
@@ -59,7 +59,7 @@ def _row(key: str, path: Path, line: int, row: list[str], header: list[str]) -> 
     found = []
     for name in _COLUMNS:
         try:
-            value = float(cells[name])
+            value = decimal(cells[name])
         except ValueError:
             value = float("nan")
         if not abs(value) < float("inf"):

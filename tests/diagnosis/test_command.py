@@ -48,7 +48,9 @@ def tumble(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
             ["data", "--out", "out", "--effects", "friction_coefficient,wind"],
             "--effects: found 'wind', expected one of m",
         ),
+        (["data", "--out", "strange"], "--out: found 'strange/scenario.toml', of no diagnosis"),
         (["data", "--out", "out", "--effects", ""], "--effects: found ''"),
+        (["data", "--out", "out", "--effects", "draft_angle", "--effects", "wind"], "--effects: found 'wind'"),
         (["data", "--out", "out", "--effects", "gone.py"], "gone.py: found no such file"),
         (["data", "--out", "out", "--effects", "bad.py"], "bad.py: found no effect"),
     ],
@@ -58,6 +60,8 @@ def test_bad_input_gets_one_line_and_writes_nothing(tmp_path: Path, arguments: l
     unseen().save(tmp_path / "lost")
     (tmp_path / "taken" / "diagnosis.json").mkdir(parents=True)
     (tmp_path / "file").write_text("")
+    (tmp_path / "strange").mkdir()
+    (tmp_path / "strange" / "scenario.toml").write_text("")
     (tmp_path / "bad.py").write_text("x = 1\n")
     before = sorted(tmp_path.rglob("*"))
     done = tumble("diagnose", *arguments, cwd=tmp_path)
@@ -105,8 +109,8 @@ def test_the_command_writes_the_files_and_prints_the_summary(
     lab().save(tmp_path / "data")
     computation = Computation(monkeypatch, small())
     out = tmp_path / "out"
-    effects = "draft_angle, size_error,draft_angle"
-    arguments = (tmp_path / "data", "--out", out, "--effects", effects, "--jobs", 2, "--seed", 5)
+    effects = ("--effects", "draft_angle, size_error", "--effects", "draft_angle")
+    arguments = (tmp_path / "data", "--out", out, *effects, "--jobs", 2, "--seed", 5)
     assert command(monkeypatch, *arguments) == 0
     said = capsys.readouterr()
     assert said.out.startswith(summary(small()))

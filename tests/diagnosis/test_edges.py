@@ -5,16 +5,21 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
-from tumblers import InputError, dataset
+from tumblers import EffectError, InputError, dataset
 from tumblers.dataset import Dataset, LabTrial, Outcome, Track
 from tumblers.diagnosis import diagnose
+from tumblers.diagnosis.caution import cautions
+from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.reading import reached
+from tumblers.diagnosis.simulator import Simulator
 from tumblers.diagnosis.words import summary
 from tumblers.effects import CATALOGUE, get, load_file
-from tumblers.field import TableField
+from tumblers.field import StaticField, TableField
 from tumblers.presets import drive
 
 from .lab import PLANS, measure, plan, without
@@ -128,6 +133,94 @@ def test_far_outside_the_model_is_unexplained(share: float) -> None:
     assert diagnosis.gap.after > 5.0
     assert summary(diagnosis)
     assert json.loads(diagnosis.to_json())["gap"]["after"] > 5.0
+
+
+def test_a_trial_of_which_nothing_was_measured_has_no_gap() -> None:
+    data = without(measure(plan(PLANS[:3])), "f05", slice(None))
+    diagnosis = diagnose(data, effects=CONSIDERED, jobs=2)
+    by_trial = json.loads(diagnosis.to_json())["gap"]["by_trial"]
+    assert set(by_trial["f05"].values()) == {None}
+    assert all(value is not None for value in by_trial["f02"].values())
+    assert summary(diagnosis)
+
+
+@pytest.mark.parametrize("strength_T", [0.0, 0.001])
+@pytest.mark.parametrize("climbs", [True, False])
+def test_a_robot_at_rest_does_not_climb(strength_T: float, climbs: bool) -> None:
+    field = StaticField(strength_T=strength_T, direction=(0.0, 1.0, 0.0))
+    outcome = Outcome(climbs=climbs)
+    trial = LabTrial(id="a", field=field, duration_s=0.5, incline_deg=5.0, outcome=outcome)
+    data = replace(plan(PLANS[:1]), trials=(trial,))
+    comparison = Comparison(data, Simulator(data, 1))
+    (path,) = comparison.nominal_paths
+    assert path is not None
+    (wrong,) = comparison.residual([path]).trials[0]
+    # As of one that does not get on in a rotating field: the likelihood is smooth.
+    share = comparison.readers[0].read_outcomes(path)["climbed_share"]
+    assert abs(share) < 1e-6
+    assert abs(wrong) == pytest.approx(abs(reached(0.0, climbs)), rel=1e-3)
+    assert abs(reached(0.0, True)) > 3.0 * abs(reached(0.0, False))
+
+
+@pytest.mark.parametrize(
+    ("change", "line"),
+    [
+        ({"duration_s": 1e-4}, r"trial[1].duration_s: found 0.0001 s, expected at least two steps of the simulation"),
+        ({"duration_s": 1e6}, "trial[1].duration_s: found 1e+06 s, which make 500000000 poses of 500000300, expected"),
+        (
+            {"field": drive(0.01, 1e6)},
+            "trial[1].duration_s: found 0.6 s, which make 36000000 poses of 36000300, expect",
+        ),
+    ],
+)
+def test_what_would_fill_the_memory_is_refused_before_it_does(change: dict[str, Any], line: str) -> None:
+    data = plan(PLANS[:2])
+    data = replace(data, trials=(data.trials[0], replace(data.trials[1], **change)))
+    with pytest.raises(InputError) as caught:
+        diagnose(data, effects=CONSIDERED)
+    assert str(caught.value).startswith(line)
+    late = replace(plan(PLANS[:2]), sensor=replace(data.sensor, time_offset_s=7.0))
+    with pytest.raises(InputError, match=r"^sensor\.time_offset_s: found 7 s, expected no more than the longest trial"):
+        diagnose(late, effects=CONSIDERED)
+
+
+@pytest.mark.parametrize(
+    ("act", "line"),
+    [
+        ("pass", "weak_amplifier: act returned None, expected a scenario"),
+        ("return scenario.field.direction", "weak_amplifier: act failed with AttributeError: .*direction"),
+    ],
+)
+def test_an_effect_whose_act_fails_says_so(tmp_path: Path, act: str, line: str) -> None:
+    (tmp_path / "weak.py").write_text(WEAK_AMPLIFIER.split("        field = ")[0] + f"        {act}\n")
+    (kind,) = load_file(tmp_path / "weak.py")
+    try:
+        with pytest.raises(EffectError, match=line):
+            diagnose(measure(plan(PLANS[:2])), effects=[kind.name])
+    finally:
+        del CATALOGUE[kind.name]
+
+
+@pytest.mark.parametrize("effects", [["friction_coefficient", 3], [None]])
+def test_effects_are_named(effects: list[Any]) -> None:
+    with pytest.raises(InputError, match="expected a name"):
+        diagnose(plan(PLANS[:1]), effects=effects)
+
+
+def test_a_zero_that_is_off_in_some_trials_is_pointed_out() -> None:
+    data = measure(plan(), seed=2)
+    track = data.trials[1].track
+    assert track is not None
+    shifted = replace(track, channels={**track.channels, "y_m": track.channels["y_m"] + 3e-4})
+    data = replace(data, trials=(data.trials[0], replace(data.trials[1], track=shifted), *data.trials[2:]))
+    diagnosis = diagnose(data, effects=CONSIDERED, jobs=2)
+    assert diagnosis.verdict == "unexplained"
+    floors = {floor.trial: floor.at_tolerance for floor in diagnosis.floors}
+    assert "origin y" in floors["f05"]
+    assert any("the origin" in said and "f05" in said and "the robot's start" in said for said in cautions(diagnosis))
+    assert not any(
+        "had to be taken" in said for said in cautions(diagnose(measure(plan()), effects=CONSIDERED, jobs=2))
+    )
 
 
 def test_a_tabulated_field_is_as_good_as_another() -> None:

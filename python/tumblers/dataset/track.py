@@ -22,6 +22,8 @@ CHANNELS = (*POSITIONS, *ANGLES)
 
 # A quaternion that was measured or rounded is still meant to have length one.
 _QUATERNION_UNIT = 0.05
+# An angle above the substrate that noise may still have made; what turns on and on is another angle.
+_STEEPEST_DEG = 120.0
 # One this close to length one is left as it is, so that what has been normalised stays the same bits.
 _UNIT = 1e-12
 
@@ -113,6 +115,9 @@ def find_fault(time_s: Array, channels: Mapping[str, Array]) -> Fault | None:
     for name, values in channels.items():
         for row in np.flatnonzero(np.isinf(values)):
             return Fault(int(row), name, show(float(values[row])), "a finite number, or none for a lost frame")
+    for row in np.flatnonzero(np.abs(channels.get("tilt_deg", np.empty(0))) > _STEEPEST_DEG):
+        found = f"{channels['tilt_deg'][row]:g} degrees"
+        return Fault(int(row), "tilt_deg", found, "the angle above the substrate, from -90 to 90 but for noise")
     if "qw" not in channels:
         return None
     known = np.isfinite([channels[name] for name in QUATERNION])

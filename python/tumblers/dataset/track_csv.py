@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..check import decimal
 from ..errors import InputError, show, unreadable
 from ..regular_file import read_regular
 from .pixels import to_substrate
@@ -42,7 +43,7 @@ class _Table:
             if lost and not cell:
                 continue
             try:
-                values[row] = float(cell)
+                values[row] = decimal(cell)
             except ValueError:
                 raise self.refuse(row, column, show(cell), expected) from None
             if not isfinite(values[row]):
@@ -89,7 +90,7 @@ def read_track_csv(key: str, path: Path, name: str, sensor: Sensor) -> Track:
         for row in np.flatnonzero(np.isnan(x) != np.isnan(y)):
             missing = pixels[0] if np.isnan(x[row]) else pixels[1]
             raise table.refuse(int(row), missing, "nothing beside the other", "both pixels or none")
-        channels["x_m"], channels["y_m"] = to_substrate(x, y, sensor)
+        channels["x_m"], channels["y_m"] = to_substrate(x, y, time, sensor)
     fault = find_fault(time, channels)
     if fault is not None:
         column = clock if fault.column == "time_s" else fault.column

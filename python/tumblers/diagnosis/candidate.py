@@ -22,9 +22,8 @@ _FINEST_DEG = 2.5
 # One frequency alone shows no range: then it is multiplied by these, up to what coils commonly do.
 _FASTER = (3.0, 10.0)
 _FASTEST_HZ = 10.0
-# Cycles that a trial lasts at least, and its least and greatest time, s.
-_CYCLES = 2.0
-_LEAST_S, _MOST_S = 1.0, 4.0
+# Cycles that a trial lasts at least, and its least time, s; but no longer than the longest that was made.
+_CYCLES, _LEAST_S = 2.0, 1.0
 _MOST_FREQUENCIES, _MOST_INCLINES, _MOST_STRENGTHS, _MOST_STATIC = 5, 10, 3, 8
 
 
@@ -158,7 +157,7 @@ def candidates(dataset: Dataset, most: int) -> tuple[Candidate, ...]:
     tilted = [t for t in dataset.trials if isinstance(t.field, StaticField)]
     rotating = [t.field for t in rolled if isinstance(t.field, RotatingField)]
     static = [t.field for t in tilted if isinstance(t.field, StaticField)]
-    longest = min(_MOST_S, max(t.duration_s for t in dataset.trials))
+    longest = max(t.duration_s for t in dataset.trials)
     runs: list[Candidate] = []
     tilts: list[Candidate] = []
     if rotating:

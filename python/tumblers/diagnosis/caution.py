@@ -71,6 +71,15 @@ def _of_trials(diagnosis: Diagnosis) -> list[str]:
     empty = [f.trial for f in diagnosis.floors if f.compared == 0]
     if empty:
         said.append(f"nothing could be compared in {', '.join(empty)}.")
+    # Where all is followed to within noise, it does not matter which end noise took it to.
+    off = [f.trial for f in diagnosis.floors if f.at_tolerance] if diagnosis.verdict != "no_gap" else []
+    if off:
+        names = sorted({name.partition(" ")[0] for f in diagnosis.floors for name in f.at_tolerance})
+        said.append(
+            f"the {' and the '.join(names)} of {', '.join(off)} had to be taken to the end of what [sensor] allows: is "
+            "time zero the field's start, and the origin the robot's start, in each of them? A zero that is off in one "
+            "trial and not in another looks like physics."
+        )
     rough = [f.trial for f in diagnosis.floors if f.numerical_sigmas > 1.0]
     if rough:
         said.append(f"the simulation's own error is above the noise in {', '.join(rough)}, and counted as noise there.")

@@ -136,7 +136,7 @@ class _Conclusion:
 
         estimates, shown = self._estimates(chosen, tied), overlays(self.fitter, nominal, self.held_out(chosen), chosen)
         ranking = tuple(self._ranked(contender) for contender in attribution.contenders)
-        floors, proposed = self._floors(), self._next(chosen, tied, tell)
+        floors, proposed = self._floors(chosen), self._next(chosen, tied, tell)
         tell("where the gap lies", 0, 2)
         regions, maps = self._where(chosen)
         # What is missing is seen against the noise around the nominal model, not around other hypotheses.
@@ -247,8 +247,9 @@ class _Conclusion:
                 out[contender.names[0]] = self.comparison.dataset.trials[worst].id
         return out
 
-    def _floors(self) -> tuple[TrialFloor, ...]:
+    def _floors(self, chosen: Contender) -> tuple[TrialFloor, ...]:
         comparison = self.comparison
+        ends = comparison.nuisances.at_tolerance(chosen.residual.local)
         return tuple(
             TrialFloor(
                 trial=reader.observed.id,
@@ -258,6 +259,7 @@ class _Conclusion:
                 frames=reader.observed.frames,
                 lost=reader.observed.lost,
                 compared=comparison.sizes[i],
+                at_tolerance=ends[i],
             )
             for i, (reader, floor) in enumerate(zip(comparison.readers, comparison.floors, strict=True))
         )
@@ -294,7 +296,8 @@ def _assumptions(comparison: Comparison, attribution: Attribution) -> tuple[str,
         "The robot starts at rest on the substrate, long axis along +y, when the field starts.",
         f"The sensor's nuisances are fitted in every hypothesis: clock within {clock}, origin within "
         f"{1e6 * sensor.origin_tolerance_m:g} µm, heading within {sensor.heading_tolerance_deg:g}°, scale within "
-        f"{100.0 * sensor.scale_tolerance:g} %. Larger ones are the effect camera_calibration.",
+        f"{100.0 * sensor.scale_tolerance:g} %. Larger ones are the effect camera_calibration, the same in all trials.",
+        "A substrate that is tilted, rough or sticky is so alike under every trial's start.",
         f"The nominal numbers may be off by these standard deviations: {nominal}.",
         "What halving the step changes is part of the noise, around each hypothesis that counts for itself, and in "
         "each trial as much of it as makes the differences likeliest. One that comes near the likeliest, and says the "

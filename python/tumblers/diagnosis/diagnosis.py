@@ -219,6 +219,7 @@ class Diagnosis:
                     "frames": floor.frames,
                     "lost": floor.lost,
                     "compared": floor.compared,
+                    "at_tolerance": list(floor.at_tolerance),
                 }
                 for floor in self.floors
             ],

@@ -111,7 +111,7 @@ def foretell(
                 ends, _ = path.at(np.array([0.0, time]))
                 speed, drift = (float(ends[1, k] - ends[0, k]) / time for k in (1, 0))
                 chance = exp(-0.5 * reached(speed / level, True) ** 2)
-                up = CLIMBS if option.incline_deg != 0.0 and chance > 0.5 else STAYS
+                up = CLIMBS if option.incline_deg > 0.0 and chance > 0.5 else STAYS
                 gone = abs(speed) > _GONE * level
                 values.append([speed, drift])
                 events.append((SLIDES if speed < 0.0 else RUNS) if gone else up)

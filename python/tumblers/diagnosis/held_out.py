@@ -186,7 +186,8 @@ def shrink(fitter: Fitter, nominal: HeldOut, chosen: HeldOut, seed: int = 0) -> 
     draws = np.random.default_rng(seed).integers(0, len(counted), (_RESAMPLES, len(counted)))
     drawn = np.sqrt(costs[:, draws].sum(axis=2) / np.maximum(sizes[draws].sum(axis=1), 1.0))
     low, high = np.quantile(_shrunk(drawn[0], drawn[2]), [0.05, 0.95])
-    by_trial = np.sqrt(costs / np.maximum(sizes, 1.0))
+    # Of what was not measured there is no gap.
+    by_trial = np.sqrt(np.divide(costs, sizes, out=np.full_like(costs, np.nan), where=sizes > 0.0))
     ids = [comparison.dataset.trials[i].id for i in counted]
     left_out = [comparison.dataset.trials[i].id for fold in folds(fitter) for i in fold]
     estimate = float(_shrunk(np.array(before), np.array(after)))

@@ -128,7 +128,7 @@ def _proposal(option: Candidate, foretold: Foretold, bits: float, names: list[tu
     predictions: dict[str, dict[str, tuple[float, float]]] = {}
     for label, said in zip(labels, foretold.said, strict=True):
         mine: dict[str, tuple[float, float]] = {}
-        if option.incline_deg != 0.0:
+        if option.incline_deg > 0.0:
             mine["climbs"] = _chance(float(said.shares @ said.climbs))
         for event, kind in ((SLIDES, "slides_away"), (RUNS, "runs_away")):
             if np.any(said.events == event):
@@ -180,7 +180,7 @@ def _why(option: Candidate, foretold: Foretold, labels: list[str], seed: int) ->
 def _says(option: Candidate, said: Said) -> str:
     if said.values.shape[1] == 1:
         return f"comes to rest at {_range(said.values[:, 0], said.shares)}°"
-    stays = "does not climb, at" if option.incline_deg != 0.0 else "goes"
+    stays = "does not climb, at" if option.incline_deg > 0.0 else "goes"
     parts = []
     for event, words in ((CLIMBS, "climbs"), (STAYS, stays), (SLIDES, "slides away"), (RUNS, "runs away")):
         share, which = said.share(event), said.events == event

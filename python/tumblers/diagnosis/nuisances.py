@@ -110,8 +110,22 @@ class NuisanceFit:
             Clock (s) and origin (m) by trial as they were fitted, shape (trials, 3).
         """
         # At either one: where the truth is far, a motion that repeats has its best now at this end, now at that.
-        ends = (np.abs(local) >= _AT_END * self.local_bounds)[self.tracked]
+        ends = self._at_end(local)[self.tracked]
         return {name for name, end in zip(get_args(Nuisance), ends.T, strict=True) if end.sum() <= 0.5 * len(ends)}
+
+    def at_tolerance(self, local: Floats) -> list[tuple[Nuisance, ...]]:
+        """Return by trial the nuisances that were fitted to the end of their tolerances.
+
+        Parameters
+        ----------
+        local
+            Clock (s) and origin (m) by trial, shape (trials, 3).
+        """
+        ends = self._at_end(local) & self.tracked[:, None] & (self.local_bounds > 0.0)
+        return [tuple(name for name, end in zip(get_args(Nuisance), row, strict=True) if end) for row in ends]
+
+    def _at_end(self, local: Floats) -> NDArray[np.bool_]:
+        return np.asarray(np.abs(local) >= _AT_END * self.local_bounds)
 
     def tolerance(self, nuisance: Nuisance) -> float:
         """Return the greatest tolerance of a nuisance over the trials, s or m; 0 without tracks.

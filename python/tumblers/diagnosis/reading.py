@@ -50,7 +50,7 @@ class Reader:
     duration_s
         Time of the trial, s.
     level_way_m
-        Way without slip in that time, hull perimeter × cycles, m; 0 where the field does not rotate.
+        Way without slip in that time, hull perimeter × cycles, m; one perimeter where the field does not rotate.
     """
 
     observed: Observed
@@ -60,9 +60,9 @@ class Reader:
     @classmethod
     def of(cls, observed: Observed, scenario: Scenario, duration_s: float) -> Reader:
         """Return the reader of a trial whose nominal scenario is given."""
-        way = 0.0
+        way = scenario.robot.body().hull_perimeter_m
         if isinstance(scenario.field, RotatingField):
-            way = scenario.robot.body().hull_perimeter_m * scenario.field.frequency_Hz * duration_s
+            way *= scenario.field.frequency_Hz * duration_s
         return cls(observed, duration_s, way)
 
     def beginning(self, frames: int) -> Reader:
@@ -168,7 +168,7 @@ class Reader:
         way = float(ends[1, 1] - ends[0, 1])
         rest = np.linspace((1.0 - _REST_SHARE) * self.duration_s, self.duration_s, _REST_MOMENTS)
         return {
-            "climbed_share": way / self.level_way_m if self.level_way_m > 0.0 else float(np.sign(way)),
+            "climbed_share": way / self.level_way_m,
             "mean_speed_m_per_s": way / self.duration_s,
             "tilt_deg": float(np.degrees(np.mean(tilt_of(body_axis(path.at(rest)[1]))))),
         }

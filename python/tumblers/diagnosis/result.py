@@ -9,6 +9,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from ..effects.parameter import Nuisance
+
 __all__ = [
     "EffectEstimate",
     "Gap",
@@ -266,6 +268,8 @@ class TrialFloor:
         along the track, or an outcome's if more.
     frames, lost, compared
         Frames of the track, frames lost, and numbers that were compared.
+    at_tolerance
+        What of the sensor was fitted to the end of its tolerance here, under the verdict's hypothesis.
     """
 
     trial: str
@@ -275,3 +279,4 @@ class TrialFloor:
     frames: int
     lost: int
     compared: int
+    at_tolerance: tuple[Nuisance, ...] = ()

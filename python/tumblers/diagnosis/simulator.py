@@ -15,7 +15,7 @@ from .. import _core
 from ..camera import Camera
 from ..dataset import Dataset
 from ..effects.base import Effect
-from ..errors import TumblersError
+from ..errors import InputError, TumblersError
 from ..field import RotatingField, TableField
 from ..model import RELEASED_TORQUE, Model
 from ..progress import native_call
@@ -33,6 +33,8 @@ _STEPS_PER_CYCLE = 100
 
 # Time by which runs are made longer for a camera whose clock is late, s.
 _PIECE_S = 0.1
+# Poses that one run of all trials may have: some hundred runs are in memory at once.
+_MOST_ROWS = 200_000
 # Bytes of rollouts that are kept: a fit often comes back to a point, and the search to a fit.
 _MOST_KEPT = 256_000_000
 
@@ -83,9 +85,27 @@ class Simulator:
         stated = "magnetic_torque" in dataset.model_given
         self.model: Model = dataset.model if stated else replace(dataset.model, magnetic_torque="midpoint")
         self.step_s = [_first_step(trial.field) for trial in dataset.trials]
+        self._check()
         self._nominal: dict[tuple[int, float], Scenario] = {}
         self._known: OrderedDict[Scenario, tuple[_core._Rollout, int]] = OrderedDict()
         self._kept = 0
+
+    def _check(self) -> None:
+        """Refuse trials that are no longer than a step, or that would take days and fill the memory."""
+        trials, offset = self.dataset.trials, self.dataset.sensor.time_offset_s
+        for i, (trial, step) in enumerate(zip(trials, self.step_s, strict=True)):
+            if trial.duration_s < 2.0 * step:
+                expected = f"at least two steps of the simulation, {2.0 * step:g} s"
+                raise InputError(f"trial[{i}].duration_s", f"{trial.duration_s:g} s", expected)
+        longest = max(trial.duration_s for trial in trials)
+        if offset is not None and offset > longest:
+            raise InputError("sensor.time_offset_s", f"{offset:g} s", f"no more than the longest trial, {longest:g} s")
+        rows = [int(trial.duration_s / _rows_interval(trial.field)) for trial in trials]
+        if sum(rows) > _MOST_ROWS:
+            most = rows.index(max(rows))
+            found = f"{trials[most].duration_s:g} s, which make {rows[most]} poses of {sum(rows)}"
+            expected = f"trials of {_MOST_ROWS} poses together, one each 2 ms and 60 in a cycle"
+            raise InputError(f"trial[{most}].duration_s", found, expected)
 
     def nominal(self, trial: int, divisor: int = 1) -> Scenario:
         """Return the scenario of what the lab believes, long enough for a clock that is off by its tolerance.
@@ -240,7 +260,7 @@ class Simulator:
         return paths
 
     def _possible(self, job: Job) -> Scenario | None:
-        with suppress(TumblersError):
+        with suppress(InputError):
             return self.scenario(job)
         return None
 
@@ -280,10 +300,15 @@ def _first_step(field: object) -> float:
     return longest
 
 
-def _rows_every(scenario: Scenario) -> int:
+def _rows_interval(field: object) -> float:
     longest = _LONGEST_INTERVAL_S
-    if isinstance(scenario.field, RotatingField):
-        longest = min(longest, 1.0 / (_ROWS_PER_CYCLE * scenario.field.frequency_Hz))
+    if isinstance(field, RotatingField):
+        longest = min(longest, 1.0 / (_ROWS_PER_CYCLE * field.frequency_Hz))
+    return longest
+
+
+def _rows_every(scenario: Scenario) -> int:
+    longest = _rows_interval(scenario.field)
     return max(1, min(int(longest / scenario.run.fixed_step_s + 1e-9), scenario.run.steps))
 
 

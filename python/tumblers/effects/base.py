@@ -10,7 +10,7 @@ from math import inf
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from ..check import number, sequence
-from ..errors import InputError, show
+from ..errors import EffectError, InputError, TumblersError, show
 from ..section import known_keys
 from .parameter import Parameter
 
@@ -102,8 +102,20 @@ class Effect(ABC):
         ------
         InputError
             A scenario that the effect cannot be added to.
+        EffectError
+            An effect whose `act` fails, or returns no scenario.
         """
-        return scenario if self.is_neutral() else self.act(scenario)
+        if self.is_neutral():
+            return scenario
+        try:
+            changed = self.act(scenario)
+        except TumblersError:
+            raise
+        except Exception as error:
+            raise EffectError(f"{self.name}: act failed with {type(error).__name__}: {error}") from error
+        if not isinstance(changed, type(scenario)):
+            raise EffectError(f"{self.name}: act returned {show(changed)}, expected a scenario")
+        return changed
 
     @property
     def resolving_step_s(self) -> float:

@@ -79,6 +79,8 @@ def get(name: str, key: str = "effect.name") -> type[Effect]:
     InputError
         A name that is not in the catalogue.
     """
+    if not isinstance(name, str):
+        raise InputError(key, show(name), "a name")
     if name not in CATALOGUE:
         near = get_close_matches(name, CATALOGUE, 1)
         found = f"{show(name)} (did you mean {near[0]}?)" if near else show(name)

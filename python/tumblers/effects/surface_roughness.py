@@ -28,9 +28,10 @@ class SurfaceRoughness(Effect):
 
     h(y) = Σ_k c_k (cos(2π k y/λ) - 1) + s_k sin(2π k y/λ), k = 1, 2, 3
 
-    The robot touches the tangent plane at its place. A nominal relief of the same wavelength gets the amplitudes added,
-    one of another wavelength is refused. Not modelled: heights that vary along x, bumps shorter than the robot or on
-    which it stands on two points, and roughness that only changes friction (see `friction_coefficient`).
+    The robot touches the tangent plane at its place, and starts at the same place of the relief in every trial. A
+    nominal relief of the same wavelength gets the amplitudes added, one of another wavelength is refused. Not
+    modelled: heights that vary along x, bumps shorter than the robot or on which it stands on two points, and
+    roughness that only changes friction (see `friction_coefficient`).
 
     Source: Fourier series of a height profile; the roughness of paper is some 10 µm over 1 mm.
 
