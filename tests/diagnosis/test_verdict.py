@@ -8,10 +8,16 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tumblers.diagnosis.attribute import Attribution
-from tumblers.diagnosis.comparison import Residual
-from tumblers.diagnosis.contender import Contender
+from tumblers.diagnosis.attribute import REFUSED, Attribution, _ranked
+from tumblers.diagnosis.comparison import Comparison, Residual
+from tumblers.diagnosis.contender import Contender, of_fit, of_nominal
+from tumblers.diagnosis.fit import Fitter
+from tumblers.diagnosis.hypothesis import Hypothesis
+from tumblers.diagnosis.simulator import Simulator
 from tumblers.diagnosis.verdict import judge, ties
+from tumblers.effects import get
+
+from .lab import PLANS, measure, plan
 
 COUNT = 400
 NO_NUISANCES = np.zeros(0)
@@ -74,3 +80,18 @@ def test_what_is_about_as_likely_is_tied_however_parsimonious_the_best_is(
     comparison = SimpleNamespace(readers=(None,))
     found = ties(comparison, attribution, best)  # type: ignore[arg-type]
     assert found == {"substrate_tilt": ("stray_field_gradient",) if tied else ()}
+
+
+def test_a_nominal_model_that_fails_its_test_counts_for_less() -> None:
+    data = measure(plan(PLANS[:2]), seed=1)
+    fitter = Fitter(Comparison(data, Simulator(data, 1)))
+    kind = get("friction_coefficient")
+    hypothesis = Hypothesis.of(kind, [fitter.comparison.simulator.nominal(i) for i in fitter.trials])
+    contenders = [of_nominal(fitter), of_fit(fitter, fitter.fit(hypothesis, np.zeros(1), evaluations=1))]
+    (right, _), (refused, _) = (_ranked(contenders, fitter.comparison, [kind.name], passed) for passed in (True, False))
+    before, after = ({c.names: c.log_evidence for c in ranked} for ranked in (right, refused))
+    assert after[()] == pytest.approx(before[()] + np.log(REFUSED))
+    assert after[kind.name,] == before[kind.name,]
+    assert [c.names for c in right] == [(), (kind.name,)]
+    # It is still the likelier one where nothing shows, but by less.
+    assert refused[0].probability < right[0].probability

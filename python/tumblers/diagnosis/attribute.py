@@ -35,7 +35,7 @@ from .predictive import is_right
 from .search import Search
 from .tolerated import is_tolerated
 
-__all__ = ["LAPSE", "PRIOR", "SECOND", "Attribution", "attribute"]
+__all__ = ["LAPSE", "PRIOR", "REFUSED", "SECOND", "Attribution", "attribute"]
 
 Floats = NDArray[np.float64]
 
@@ -48,6 +48,9 @@ SECOND = 10.0
 # How often the likeliest is wrong however strong the evidence: a form that the catalogue lacks, a minimum that no
 # search found. Shared by all, and of the order of what datasets with a known truth showed while this was developed.
 LAPSE = 0.12
+# By how much less probable the nominal model is once it has failed the predictive test, which a right model does not do
+# more often: where one trial alone is far off, neighbouring frames that count as one say too little of it.
+REFUSED = 0.02
 # Trial points of the last fit of the best, from where it is: intervals are no better than it.
 _LAST_POINTS = 12
 # Of equals the one with fewer parameters is preferred, then the one that the catalogue lists first.
@@ -98,10 +101,10 @@ def attribute(
     search = Search(fitter, kinds, on_phase or (lambda _phase, _done, _total: None), seed)
     right = is_right(comparison, of_nominal(fitter).residual)
     contenders = search.contenders()
-    ranked, dispersion = _ranked(contenders, comparison, search.names)
+    ranked, dispersion = _ranked(contenders, comparison, search.names, right)
     while not comparison.simulator.resolves(ranked[0].effects):
         contenders = search.in_steps_of(ranked[0], contenders)
-        ranked, dispersion = _ranked(contenders, comparison, search.names)
+        ranked, dispersion = _ranked(contenders, comparison, search.names, right)
     if right:
         ranked = _with_tolerated(ranked, comparison)
     # From here on all are seen against one noise: that around the best, as much of it as the best needs.
@@ -137,14 +140,14 @@ def _seen(fitter: Fitter, contender: Contender, first: bool) -> Contender:
 
 
 def _ranked(
-    contenders: Sequence[Contender], comparison: Comparison, effects: Sequence[str]
+    contenders: Sequence[Contender], comparison: Comparison, effects: Sequence[str], nominal_is_right: bool
 ) -> tuple[list[Contender], float]:
     noted = [len(floor.outcome_scale) for floor in comparison.floors]
     alike = comparison.alike
     dispersion = alike * max(1.0, min(contender.cost for contender in contenders) / comparison.count)
     listed = max(len(effects), 1)
     prior = {
-        0: log(PRIOR[0]),
+        0: log(PRIOR[0] * (1.0 if nominal_is_right else REFUSED)),
         1: log(PRIOR[1] / listed),
         2: log(PRIOR[2] / max(listed * (listed - 1) // 2, 1)) - SECOND,
     }

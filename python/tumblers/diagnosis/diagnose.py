@@ -15,7 +15,7 @@ from ..effects.catalogue import CATALOGUE, get
 from ..errors import InputError, show
 from ..progress import OnPhase, phases
 from ..version import __version__
-from .attribute import LAPSE, PRIOR, SECOND, Attribution, attribute
+from .attribute import LAPSE, PRIOR, REFUSED, SECOND, Attribution, attribute
 from .comparison import Comparison
 from .contender import Contender
 from .diagnosis import Diagnosis
@@ -311,7 +311,8 @@ def _assumptions(comparison: Comparison, attribution: Attribution) -> tuple[str,
         f"Tried were {', '.join(tried)}." if tried else "No effect that was tried can be at work in these trials.",
         f"However strong the evidence, {100.0 * LAPSE:.0f} % of the probability belongs to all hypotheses alike.",
         f"Before anything is fitted, {100.0 * PRIOR[0]:g} % for no gap, {100.0 * PRIOR[1]:g} % for one effect, "
-        f"{100.0 * PRIOR[2]:g} % for two; no more than two are tried.",
+        f"{100.0 * PRIOR[2]:g} % for two; no more than two are tried. A nominal model that fails the predictive test "
+        f"counts {REFUSED:g} of that.",
         f"A second effect must add a factor e^{SECOND:g} of evidence: one in another form than ours looks like two.",
         "Evidence is Laplace's approximation; intervals are 90 % likelihood ratios along the ridge of the posterior, "
         "and what multiplies a nominal number, or adds to a nominal force, is known no better than that.",
