@@ -130,10 +130,7 @@ pub fn compare<'py>(
         .collect()
 }
 
-fn seen<'a>(
-    path: Option<&'a PyPath<'_>>,
-    outcomes: &PyReadonlyArray2<'_, f64>,
-) -> PyResult<Seen<'a>> {
+fn seen<'a>(path: Option<&'a PyPath<'_>>, outcomes: &PyReadonlyArray2<'_, f64>) -> PyResult<Seen<'a>> {
     let path = path
         .map(|(interval, clock, poses)| {
             width("a path's poses", poses, 7)?;
