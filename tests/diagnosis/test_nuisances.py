@@ -92,9 +92,14 @@ def test_where_the_tolerance_is_enough_the_camera_has_no_origin_and_no_clock() -
     assert comparison.nuisances.enough(local) == {"clock", "origin x", "origin y"}
     # Some trials at an end are no shift of all.
     bound = comparison.nuisances.local_bounds[:, 1]
-    local[:, 1] = bound * [1, -1, 0, 0, 0]
+    local[:, 1] = bound * [1, -1, 0.5, 0.1, 0.1]
     assert "origin x" in comparison.nuisances.enough(local)
-    local[:, 1] = bound * [1, -1, 1, 0, 0]
+    local[:, 1] = bound * [1, 0.0, 0.0, 0.0, 0.0]
+    assert "origin x" in comparison.nuisances.enough(local)
+    # Those that say nothing do not count.
+    local[:, 1] = bound * [1, -1, 0.0, 0.0, 0.5]
+    assert comparison.nuisances.enough(local) == {"clock", "origin y"}
+    local[:, 1] = bound * [1, -1, 1, 0.1, 0.2]
     assert comparison.nuisances.enough(local) == {"clock", "origin y"}
     scenarios = [comparison.simulator.nominal(i) for i in range(len(comparison.readers))]
     hypothesis = Hypothesis.of(get("camera_calibration"), scenarios)

@@ -82,16 +82,27 @@ def test_what_is_about_as_likely_is_tied_however_parsimonious_the_best_is(
     assert found == {"substrate_tilt": ("stray_field_gradient",) if tied else ()}
 
 
-def test_a_nominal_model_that_fails_its_test_counts_for_less() -> None:
-    data = measure(plan(PLANS[:2]), seed=1)
+def test_a_nominal_model_that_fails_its_test_counts_for_less_where_another_is_likelier() -> None:
+    truth = (get("viscous_drag").from_vector((0.02,)),)
+    data = measure(plan(PLANS[:2]), truth, seed=1)
     fitter = Fitter(Comparison(data, Simulator(data, 1)))
-    kind = get("friction_coefficient")
-    hypothesis = Hypothesis.of(kind, [fitter.comparison.simulator.nominal(i) for i in fitter.trials])
-    contenders = [of_nominal(fitter), of_fit(fitter, fitter.fit(hypothesis, np.zeros(1), evaluations=1))]
-    (right, _), (refused, _) = (_ranked(contenders, fitter.comparison, [kind.name], passed) for passed in (True, False))
-    before, after = ({c.names: c.log_evidence for c in ranked} for ranked in (right, refused))
+    fitter.take_likeliest_noise(truth)
+    scenarios = [fitter.comparison.simulator.nominal(i) for i in fitter.trials]
+    drag, idle = (Hypothesis.of(get(name), scenarios) for name in ("viscous_drag", "draft_angle"))
+    nominal = of_nominal(fitter)
+    better = of_fit(fitter, fitter.fit(drag, drag.starts[0], evaluations=8))
+    nothing = of_fit(fitter, fitter.fit(idle, np.zeros(1), evaluations=1))
+    assert better.total < nominal.total - 500.0
+    assert nothing.total == pytest.approx(nominal.total, abs=1.0)
+
+    def evidence(contenders: list[Contender], passed: bool) -> dict[tuple[str, ...], float]:
+        ranked, _ = _ranked(contenders, fitter.comparison, ["viscous_drag", "draft_angle"], passed)
+        return {contender.names: contender.log_evidence for contender in ranked}
+
+    before, after = (evidence([nominal, better, nothing], passed) for passed in (True, False))
     assert after[()] == pytest.approx(before[()] + np.log(REFUSED))
-    assert after[kind.name,] == before[kind.name,]
-    assert [c.names for c in right] == [(), (kind.name,)]
-    # It is still the likelier one where nothing shows, but by less.
-    assert refused[0].probability < right[0].probability
+    assert after["viscous_drag",] == before["viscous_drag",]
+    # What does nothing must not lead because the nominal model is wrong.
+    before, after = (evidence([nominal, nothing], passed) for passed in (True, False))
+    assert after == before
+    assert after[()] > after["draft_angle",]

@@ -63,7 +63,7 @@ class _World:
             frames = self.lab.frames(plan) + (late_s[i] if late_s is not None and plan.tracked else 0.0)
             scenario = world_scenario(self.lab, plan, self.jitter)
             scenario = replace(scenario, run=replace(scenario.run, step_s=finer * scenario.run.fixed_step_s))
-            scenes.append(watch(scenario, laws, frames, trial=i, solver=solver))
+            scenes.append(watch(scenario, laws, frames, trial=i, solver=solver, filmed=plan.tracked))
         return scenes
 
     def strength(self, laws: Sequence[Law]) -> Strength | None:

@@ -74,7 +74,10 @@ def difference_sigma(
 
 
 def _scenes(lab: Lab, laws: Sequence[Law], jitter: Jitter) -> list[Scene]:
-    return [watch(jitter.edit(lab.scenario(plan)), laws, lab.frames(plan), solver="reduced") for plan in lab.plans]
+    return [
+        watch(jitter.edit(lab.scenario(plan)), laws, lab.frames(plan), solver="reduced", filmed=plan.tracked)
+        for plan in lab.plans
+    ]
 
 
 def _lab(data: Dataset) -> Lab:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
+from ..field import TableField
 from ..scenario import Scenario
 from .law import Law, State
 
@@ -59,7 +60,13 @@ class Scene:
 
 
 def watch(
-    scenario: Scenario, laws: Sequence[Law], times_s: NDArray[np.float64], *, trial: int = 0, solver: Solver = "general"
+    scenario: Scenario,
+    laws: Sequence[Law],
+    times_s: NDArray[np.float64],
+    *,
+    trial: int = 0,
+    solver: Solver = "general",
+    filmed: bool = True,
 ) -> Scene:
     """Run a scenario under laws and return its poses at given times.
 
@@ -78,6 +85,8 @@ def watch(
         The trial's number in its dataset.
     solver
         The solver to try first.
+    filmed
+        Whether the times are those of the camera's clock, or the field's.
 
     Raises
     ------
@@ -86,14 +95,17 @@ def watch(
     ArithmeticError
         The motion diverged.
     """
+    if filmed:
+        times_s = times_s + _settled(scenario, laws, trial).camera.time_offset_s
+        if isinstance(scenario.field, TableField):
+            times_s = np.minimum(times_s, scenario.field.time_s[-1])
     scene = _watch(scenario, laws, times_s, trial, solver)
     return scene if scene.converged or solver == "reduced" else _watch(scenario, laws, times_s, trial, "reduced")
 
 
 def _watch(scenario: Scenario, laws: Sequence[Law], times_s: NDArray[np.float64], trial: int, solver: Solver) -> Scene:
     h = scenario.run.fixed_step_s
-    # A camera whose clock is off looks at other times.
-    frames = np.maximum(times_s + _settled(scenario, laws, trial).camera.time_offset_s, 0.0)
+    frames = np.maximum(times_s, 0.0)
     first = np.floor(frames / h * (1.0 + 1e-12)).astype(int)
     last = int(first[-1]) + 1
     scenario = replace(scenario, run=replace(scenario.run, duration_s=last * h, output_every_s=None))

@@ -49,7 +49,8 @@ SECOND = 10.0
 # search found. Shared by all, and of the order of what datasets with a known truth showed while this was developed.
 LAPSE = 0.12
 # By how much less probable the nominal model is once it has failed the predictive test, which a right model does not do
-# more often: where one trial alone is far off, neighbouring frames that count as one say too little of it.
+# more often, and something else is likelier by that. Where one trial alone is far off, neighbouring frames that count
+# as one say too little of it.
 REFUSED = 0.02
 # Trial points of the last fit of the best, from where it is: intervals are no better than it.
 _LAST_POINTS = 12
@@ -147,24 +148,29 @@ def _ranked(
     dispersion = alike * max(1.0, min(contender.cost for contender in contenders) / comparison.count)
     listed = max(len(effects), 1)
     prior = {
-        0: log(PRIOR[0] * (1.0 if nominal_is_right else REFUSED)),
+        0: log(PRIOR[0]),
         1: log(PRIOR[1] / listed),
         2: log(PRIOR[2] / max(listed * (listed - 1) // 2, 1)) - SECOND,
     }
     place = {name: k for k, name in enumerate(effects)}
-    scored = []
+    scored: list[tuple[float, Contender]] = []
+    likelihoods: dict[tuple[str, ...], float] = {}
     for c in contenders:
         # Outcomes stand for themselves.
         outcomes = sum(
             robust_cost(values[len(values) - count :]) for values, count in zip(c.residual.trials, noted, strict=True)
         )
         likelihood = -0.5 * (c.total + (alike - 1.0) * outcomes) / dispersion
+        likelihoods[c.names] = likelihood
         evidence = likelihood + prior[len(c.names)]
         evidence -= _PER_PARAMETER * c.free + _PER_PLACE * sum(place[name] for name in c.names)
         if c.fit is not None:
             information = c.fit.information(dispersion) * PRIOR_SIGMA**2
             evidence -= 0.5 * float(np.linalg.slogdet(information)[1])
         scored.append((evidence, replace(c, log_likelihood=likelihood)))
+    # Where nothing is likelier by as much, what does nothing would lead.
+    if not nominal_is_right and max(likelihoods.values()) > likelihoods[()] - log(REFUSED):
+        scored = [(evidence + (0.0 if c.names else log(REFUSED)), c) for evidence, c in scored]
     top = max(evidence for evidence, _ in scored)
     weights = np.exp([evidence - top for evidence, _ in scored])
     shares = (1.0 - LAPSE) * weights / weights.sum() + LAPSE / len(weights)

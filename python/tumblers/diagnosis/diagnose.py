@@ -78,6 +78,8 @@ def diagnose(
     ------
     InputError
         An effect or a number that is refused, or a dataset in which nothing was measured.
+    EffectError
+        An effect of a user's own that fails.
     SimulationError
         The native module gave up.
     """
@@ -312,7 +314,7 @@ def _assumptions(comparison: Comparison, attribution: Attribution) -> tuple[str,
         f"However strong the evidence, {100.0 * LAPSE:.0f} % of the probability belongs to all hypotheses alike.",
         f"Before anything is fitted, {100.0 * PRIOR[0]:g} % for no gap, {100.0 * PRIOR[1]:g} % for one effect, "
         f"{100.0 * PRIOR[2]:g} % for two; no more than two are tried. A nominal model that fails the predictive test "
-        f"counts {REFUSED:g} of that.",
+        f"counts {REFUSED:g} of that where something is likelier by as much.",
         f"A second effect must add a factor e^{SECOND:g} of evidence: one in another form than ours looks like two.",
         "Evidence is Laplace's approximation; intervals are 90 % likelihood ratios along the ridge of the posterior, "
         "and what multiplies a nominal number, or adds to a nominal force, is known no better than that.",

@@ -286,15 +286,8 @@ class Fitter:
         return [[(cost, p) for cost, _, p in sorted(those, key=lambda entry: entry[:2])] for those in tried]
 
     def _batch(self, hypotheses: Sequence[Hypothesis], points: Sequence[Sequence[Floats]]) -> list[list[Residual]]:
-        jobs = []
-        for h, mine in zip(hypotheses, points, strict=True):
-            for point in mine:
-                effects = h.effects(point)
-                jobs += [Job(i, effects) for i in self.trials]
-        paths = self.comparison.simulator.run(jobs)
-        count = len(self.trials)
-        found = iter(self.comparison.residuals([paths[k : k + count] for k in range(0, len(paths), count)]))
-        return [[next(found) for _ in mine] for mine in points]
+        # One after another: long tracks of all at once would fill the memory.
+        return [self.residuals(h, mine) if len(mine) else [] for h, mine in zip(hypotheses, points, strict=True)]
 
     def fit(
         self,

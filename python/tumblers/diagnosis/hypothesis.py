@@ -100,7 +100,8 @@ class Hypothesis:
         if not held.any():
             return self
         low, high = np.where(held, 0.0, self.low), np.where(held, 0.0, self.high)
-        starts, close = (those[~np.any(those[:, held] != 0.0, axis=1)] for those in (self.starts, self.close))
+        starts, close = (np.where(held, 0.0, those) for those in (self.starts, self.close))
+        starts, close = (those[np.any(those != 0.0, axis=1)] for those in (starts, close))
         return replace(self, low=low, high=high, starts=starts, close=close)
 
     @property

@@ -80,10 +80,9 @@ def next_trials(
 
     def look(options: Sequence[Candidate], most: int | None) -> list[tuple[float, Candidate, Foretold]]:
         sets = [Counter(_spread(mine, len(mine) if most is None else most)) for _, mine in hypotheses]
-        jobs = [Job(0, effects, edit=option.edit) for option in options for mine in sets for effects in mine]
-        paths = iter(simulator.run(jobs))
         out: list[tuple[float, Candidate, Foretold]] = []
         for option in options:
+            paths = iter(simulator.run([Job(0, effects, edit=option.edit) for mine in sets for effects in mine]))
             run = [[(times, next(paths)) for times in mine.values()] for mine in sets]
             foretold = foretell(dataset, simulator, option, run)
             if foretold is not None:

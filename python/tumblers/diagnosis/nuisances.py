@@ -15,7 +15,7 @@ depends on the hypothesis alone. It is native (`crates/sensing`).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import radians
+from math import inf, radians
 from typing import NamedTuple, get_args
 
 import numpy as np
@@ -36,6 +36,8 @@ Floats = NDArray[np.float64]
 
 # A nuisance is at its end beyond this share of its tolerance.
 _AT_END = 0.99
+# From this share of its tolerance on a nuisance has been moved by what was measured.
+_TELLS = 1e-3
 # A nominal number is not off by more than so many tolerances.
 _MOST_OFF = 3.0
 # A tolerance is two standard deviations; a clock's offset is uniform within it.
@@ -111,7 +113,10 @@ class NuisanceFit:
         """
         # At either one: where the truth is far, a motion that repeats has its best now at this end, now at that.
         ends = self._at_end(local)[self.tracked]
-        return {name for name, end in zip(get_args(Nuisance), ends.T, strict=True) if end.sum() <= 0.5 * len(ends)}
+        # A robot at rest says nothing of the clock, which stays where it was.
+        tells = (np.abs(local) > _TELLS * self.local_bounds)[self.tracked] | (self.local_bounds == 0.0)[self.tracked]
+        counts = zip(get_args(Nuisance), ends.sum(axis=0), tells.sum(axis=0), strict=True)
+        return {name for name, end, told in counts if end <= max(0.5 * told, 1)}
 
     def at_tolerance(self, local: Floats) -> list[tuple[Nuisance, ...]]:
         """Return by trial the nuisances that were fitted to the end of their tolerances.
@@ -128,7 +133,7 @@ class NuisanceFit:
         return np.asarray(np.abs(local) >= _AT_END * self.local_bounds)
 
     def tolerance(self, nuisance: Nuisance) -> float:
-        """Return the greatest tolerance of a nuisance over the trials, s or m; 0 without tracks.
+        """Return the greatest tolerance of a nuisance over the trials, s or m; infinite without tracks.
 
         Parameters
         ----------
@@ -136,7 +141,7 @@ class NuisanceFit:
             Its name.
         """
         bounds = self.local_bounds[self.tracked, get_args(Nuisance).index(nuisance)]
-        return float(np.max(bounds, initial=0.0))
+        return float(np.max(bounds)) if len(bounds) else inf
 
     def fitted(
         self,

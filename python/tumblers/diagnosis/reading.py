@@ -158,8 +158,8 @@ class Reader:
         return terms | slides, by_scale
 
     def _slid_share(self, path: Path) -> float:
-        """Return how far the model slides, as a share of how far the robot did."""
-        ends, _ = path.at(np.array([0.0, self.duration_s]))
+        """Return how far the model slides while the camera runs, as a share of how far the robot did."""
+        ends, _ = path.at(np.array([0.0, self.duration_s]) + path.clock_s)
         return float(np.hypot(*(ends[1, :2] - ends[0, :2]))) / self.observed.slid_m
 
     def read_outcomes(self, path: Path) -> dict[str, float]:

@@ -93,7 +93,8 @@ class Search:
         self.fitter.take_likeliest_noise(())
         nominal = of_nominal(self.fitter)
         enough = self.comparison.nuisances.enough(nominal.residual.local)
-        self.possible = [hypothesis.without(enough) for hypothesis in self.possible]
+        held = (hypothesis.without(enough) for hypothesis in self.possible)
+        self.possible = [hypothesis for hypothesis in held if len(hypothesis.starts)]
         singles = self._singles(nominal)
         if not singles or singles[0].total > nominal.total - self.worth:
             return [nominal, *singles]

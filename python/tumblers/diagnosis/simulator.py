@@ -33,8 +33,8 @@ _STEPS_PER_CYCLE = 100
 
 # Time by which runs are made longer for a camera whose clock is late, s.
 _PIECE_S = 0.1
-# Poses that one run of all trials may have: some hundred runs are in memory at once.
-_MOST_ROWS = 200_000
+# Poses that one run of all trials may have: some dozen runs are in memory at once.
+_MOST_ROWS = 500_000
 # Bytes of rollouts that are kept: a fit often comes back to a point, and the search to a fit.
 _MOST_KEPT = 256_000_000
 
@@ -151,9 +151,11 @@ class Simulator:
             shorter = max(job.share * scenario.run.duration_s, 2.0 * _LONGEST_INTERVAL_S)
             scenario = replace(scenario, run=replace(scenario.run, duration_s=shorter))
         late = scenario.camera.time_offset_s
-        if late > 0.0 and not isinstance(scenario.field, TableField):
+        if late > 0.0:
             # In even pieces, so that a clock that is fitted does not ask for another run at every step.
             longer = scenario.run.duration_s + _PIECE_S * ceil(late / _PIECE_S)
+            if isinstance(scenario.field, TableField):
+                longer = max(min(longer, scenario.field.time_s[-1]), scenario.run.duration_s)
             scenario = replace(scenario, run=replace(scenario.run, duration_s=longer))
         return scenario
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from dataclasses import MISSING, fields
 from inspect import isabstract
+from typing import get_args
 
 from ..errors import InputError, show
 from .base import Effect
-from .parameter import Parameter
+from .parameter import Nuisance, Parameter
 
 __all__ = ["check_definition"]
 
@@ -47,6 +48,8 @@ def check_definition(effect: object) -> type[Effect]:
     for p in parameters:
         if not p.low <= p.neutral <= p.high:
             raise InputError(f"{name}.{p.key}", f"a range from {p.low:g} to {p.high:g}", f"one around {p.neutral:g}")
+        if p.beyond not in (None, *get_args(Nuisance)):
+            raise InputError(f"{name}.{p.key}", f"beyond={show(p.beyond)}", f"one of {', '.join(get_args(Nuisance))}")
     effect()
     return effect
 
