@@ -71,8 +71,16 @@ def test_the_summary_says_where_what_how_far_ties_and_next() -> None:
 
 def test_amounts_of_two_nouns_explain_together() -> None:
     camera = {"scale": Interval(1.045, 1.036, 1.054), "heading_deg": Interval(0.0, -2.0, 2.0)}
+    camera |= {f"origin_m[{i}]": Interval(0.0, -5e-5, 5e-5) for i in range(2)}
+    camera |= {"time_offset_s": Interval(0.0, -8e-3, 8e-3)}
     words = headline(made(effects=(EffectEstimate("camera_calibration", 0.9, camera, ()),)))
     assert "a scale of 1.045 ± 0.009 and a heading of 0° ± 2° explain 93 %" in words
+    # Of the origin and the clock, what is off.
+    camera |= {"origin_m[1]": Interval(3e-4, 2.5e-4, 3.5e-4)}
+    words = headline(made(effects=(EffectEstimate("camera_calibration", 0.9, camera, ()),)))
+    assert "a heading of 0° ± 2° and an origin at " in words
+    assert "along y explain 93 %" in words
+    assert "along x explain" not in words
 
 
 def test_of_what_is_ruled_out_a_terminal_names_a_few_and_the_report_all() -> None:

@@ -274,19 +274,17 @@ def _compliance(found: _Found) -> Phrase:
 
 
 def _camera(found: _Found) -> Phrase:
-    words = {
-        "scale": "a scale of {}",
-        "heading_deg": "a heading of {}",
+    said = [f"a scale of {found.text('scale')}", f"a heading of {found.text('heading_deg')}"]
+    more = {
         "origin_m[0]": "an origin at {} along x",
         "origin_m[1]": "an origin at {} along y",
         "time_offset_s": "a clock that says 0 at {}",
     }
-    off = [key for key in words if found.off(key)]
-    said = [words[key].format(found.text(key)) for key in off or ["scale", "heading_deg"]]
+    said += [words.format(found.text(key)) for key, words in more.items() if found.off(key)]
     return Phrase(
         "the camera is off, a gap of the measurement and not of the model",
-        " and ".join([", ".join(said[:-1]), said[-1]] if len(said) > 1 else said),
-        plural=len(said) > 1,
+        f"{', '.join(said[:-1])} and {said[-1]}",
+        plural=True,
     )
 
 
