@@ -27,9 +27,12 @@ MAYBE = st.none()
 def tracks(draw: st.DrawFn) -> Track:
     time = sorted(draw(st.sets(st.floats(0, DURATION), max_size=6)))
     names = draw(st.sets(st.sampled_from([name for name in CHANNELS if not name.startswith("q")])))
-    cell = VALUE | st.just(float("nan"))
-    columns = st.lists(cell, min_size=len(time), max_size=len(time))
-    channels = {name: np.array(draw(columns)) for name in names}
+
+    def column(name: str) -> np.ndarray:  # type: ignore[type-arg]
+        cell = (st.floats(-90, 90) if name == "tilt_deg" else VALUE) | st.just(float("nan"))
+        return np.array(draw(st.lists(cell, min_size=len(time), max_size=len(time))))
+
+    channels = {name: column(name) for name in sorted(names)}
     if not channels or draw(st.booleans()):
         vectors = draw(
             st.lists(st.tuples(*[st.floats(0.1, 1.0)] * 4), min_size=len(time), max_size=len(time)).map(np.array)

@@ -49,7 +49,15 @@ DATASET = (
 TRACK = "frame,x,y,tilt_deg\n0,10.5,20,0\n1,11,20.5,3\n2,,,\n3,12,21,\n"
 ANSWER: dict[str, Any] = {
     "kind": "one",
-    "effects": [{"name": "viscous_drag", "form": "catalogue", "parameters": {"factor": 1.5}, "strength_sigma": 3.0}],
+    "effects": [
+        {
+            "name": "viscous_drag",
+            "form": "catalogue",
+            "form_seed": None,
+            "parameters": {"factor": 1.5},
+            "strength_sigma": 3.0,
+        }
+    ],
     "strength_sigma": 3.0,
     "strength_by_trial": {"f05": 3.0},
     "affected_trials": ["f05"],
