@@ -251,7 +251,8 @@ class Fitter:
             Derivatives of the differences by the first effects' parameters at the base, shape (n, q).
         """
         starts = [[np.clip(b + s, h.low, h.high) for s in h.starts] for h, b in zip(hypotheses, base, strict=True)]
-        found = self._batch(hypotheses, starts)
+        # One hypothesis after another: long tracks of all at once would fill the memory.
+        found = [self.residuals(h, points) for h, points in zip(hypotheses, starts, strict=True)]
         weights = self._weights(still, self.trials)
         here = weights * still.over(self.trials)
         first = np.empty((len(here), 0)) if slopes is None else slopes[: len(here)]
@@ -280,14 +281,10 @@ class Fitter:
             # With other effects at work already, one guess each is looked at.
             mine.sort(key=lambda guess: guess[0])
             guesses.append([guess for _, guess in (mine[:1] if first.shape[1] else mine)])
-        for those, points, residuals in zip(tried, guesses, self._batch(hypotheses, guesses), strict=True):
-            count = len(those)
+        for h, those, points in zip(hypotheses, tried, guesses, strict=True):
+            count, residuals = len(those), self.residuals(h, points)
             those += [(self.cost(r, p), count + n, p) for n, (r, p) in enumerate(zip(residuals, points, strict=True))]
         return [[(cost, p) for cost, _, p in sorted(those, key=lambda entry: entry[:2])] for those in tried]
-
-    def _batch(self, hypotheses: Sequence[Hypothesis], points: Sequence[Sequence[Floats]]) -> list[list[Residual]]:
-        # One after another: long tracks of all at once would fill the memory.
-        return [self.residuals(h, mine) if len(mine) else [] for h, mine in zip(hypotheses, points, strict=True)]
 
     def fit(
         self,
