@@ -98,12 +98,13 @@ def _around(fitter: Fitter, dispersion: float, fit: Fit) -> dict[tuple[str, str]
         if parameter.turns:
             moved = [(change + _HALF_TURN) % (2.0 * _HALF_TURN) - _HALF_TURN for change in moved]
         least = _SIDE * least_deviation(*key, float(estimates[j]), scenarios)
-        held = parameter.beyond is not None and hypothesis.high[j] <= hypothesis.low[j]
-        if held and parameter.beyond is not None:
-            least = fitter.comparison.nuisances.tolerance(parameter.beyond)
+        # What the sensor's tolerance takes was not fitted here, and is known no better than that.
+        taken = parameter.beyond if hypothesis.high[j] <= hypothesis.low[j] else None
+        if taken is not None:
+            least = fitter.comparison.nuisances.tolerance(taken)
         ends = [float(np.clip(estimates[j] + end, low, high)) for end in (min([-least, *moved]), max([least, *moved]))]
         width = (ends[1] - ends[0]) / max(high - low, 1e-300)
-        out[key] = Interval(float(estimates[j]), ends[0], ends[1], bool(width < _IDENTIFIED) and not held)
+        out[key] = Interval(float(estimates[j]), ends[0], ends[1], bool(width < _IDENTIFIED) and taken is None)
     return out
 
 
