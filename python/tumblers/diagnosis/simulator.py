@@ -104,7 +104,7 @@ class Simulator:
         if sum(rows) > _MOST_ROWS:
             most = rows.index(max(rows))
             found = f"{trials[most].duration_s:g} s, which make {rows[most]} poses of {sum(rows)}"
-            expected = f"trials of {_MOST_ROWS} poses together, one each 2 ms and 60 in a cycle"
+            expected = f"at most {_MOST_ROWS} in all trials, one each 2 ms and 60 in a cycle"
             raise InputError(f"trial[{most}].duration_s", found, expected)
 
     def nominal(self, trial: int, divisor: int = 1) -> Scenario:
