@@ -61,12 +61,13 @@ def simulate(scenario: Scenario, solver: Solver = "reduced", progress: bool | On
     xarray.Dataset
         A row for the start, every ``output_every_s`` and the end: dimensions ``time`` (coordinate in s), ``axis``
         (x, y, z), ``wxyz`` and ``tor`` (t, o, r), every variable with its units. Where the camera is not as it should
-        be, ``seen_time_s``, ``seen_position_m`` and ``seen_orientation`` are what it sees. Attributes: the scenario's
-        TOML;
-        ``twist_deg`` and ``drift_m`` after one cycle of the field (NaN if there is none), ``flipped``,
-        ``speed_m_per_s``, ``steps``, ``unconverged_steps``, ``max_residual``, ``max_penetration_m``. Where the scenario
-        left the step to be chosen: ``step_s``, ``step_error``, its error estimate as a share, and ``step_met``, whether
-        that is at most 1 %; the scenario's TOML has the step as a number.
+        be, ``seen_time_s``, ``seen_position_m`` and ``seen_orientation`` are what it sees.
+
+        Attributes: the scenario's TOML; ``twist_deg`` and ``drift_m`` after one cycle of the field (NaN if there is
+        none), ``flipped``, ``speed_m_per_s``, ``steps``, ``unconverged_steps``, ``max_residual``,
+        ``max_penetration_m``. Where the scenario left the step to be chosen: ``step_s``, ``step_error``, its error
+        estimate as a share, and ``step_met``, whether that is at most 1 %; the scenario's TOML has the step as a
+        number.
 
     Raises
     ------

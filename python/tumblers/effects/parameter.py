@@ -8,7 +8,7 @@ from typing import Literal
 
 __all__ = ["Nuisance", "Parameter"]
 
-# What of each trial's sensor is fitted in every hypothesis.
+# What of each trial's sensor is fitted in every hypothesis, in the order in which a diagnosis keeps it.
 Nuisance = Literal["clock", "origin x", "origin y"]
 
 
