@@ -13,8 +13,9 @@ from tumblers.blind.outside import OUTSIDE
 from tumblers.blind.view import channels_of, turn_between
 from tumblers.blind.world import Scene, watch
 from tumblers.effects.base import Effect
+from tumblers.effects.camera_calibration import CameraCalibration
 from tumblers.effects.catalogue import CATALOGUE
-from tumblers.field import RotatingField, StaticField
+from tumblers.field import RotatingField, StaticField, TableField
 from tumblers.model import Model
 from tumblers.scenario import Scenario
 
@@ -63,6 +64,29 @@ def test_exchanging_equal_trials_changes_nothing() -> None:
         every = 8
 
     assert gap_m(watch(flat(), [Nothing()], TIMES, solver="reduced"), watch(flat(), (), TIMES, solver="reduced")) < 1e-9
+
+
+def test_a_camera_whose_clock_is_late_films_later_poses_and_leaves_the_field_s_times_as_they_are() -> None:
+    late_s = 0.0431
+    camera = [EffectLaw(CameraCalibration(time_offset_s=late_s))]
+    filmed = watch(flat(), camera, TIMES, solver="reduced")
+    np.testing.assert_array_equal(filmed.time_s, TIMES + late_s)
+    assert gap_m(filmed, watch(flat(), (), TIMES + late_s, solver="reduced")) == 0.0
+    plain = watch(flat(), (), TIMES, solver="reduced")
+    assert gap_m(watch(flat(), camera, TIMES, solver="reduced", filmed=False), plain) == 0.0
+    assert gap_m(filmed, plain) > 1e-5
+
+
+def test_a_camera_whose_clock_is_late_sees_the_last_of_a_table_s_field_to_the_end() -> None:
+    end_s = float(TIMES[-1])
+    field = TableField(time_s=(0.0, end_s), field_T=((0.0, 0.002, 0.0), (0.0, 0.0, 0.01)))
+    scenario = flat()
+    scenario = replace(scenario, field=field, run=replace(scenario.run, duration_s=end_s))
+    seen = watch(scenario, [EffectLaw(CameraCalibration(time_offset_s=0.1))], TIMES, solver="reduced")
+    np.testing.assert_array_equal(seen.time_s, np.minimum(TIMES + 0.1, end_s))
+    beyond = end_s < (TIMES + 0.1)
+    assert 1 < beyond.sum() < len(TIMES)
+    assert np.all(seen.poses.position_m[beyond] == seen.poses.position_m[-1])
 
 
 def test_the_tracked_point_is_the_body_s_centre() -> None:

@@ -11,6 +11,7 @@ from numpy.testing import assert_allclose
 from tumblers.dataset import Dataset, LabTrial, Track
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.observed import observe
+from tumblers.diagnosis.reading import reached
 from tumblers.diagnosis.simulator import Job, Simulator
 from tumblers.effects.adhesion_coefficient import AdhesionCoefficient
 from tumblers.field import StaticField
@@ -59,3 +60,21 @@ def test_a_model_that_slides_is_nearer_to_a_robot_that_does_than_one_that_holds(
     # One in a hundred writes down the wrong outcome.
     assert reader.outcome_terms(held, still)["slides"] ** 2 == pytest.approx(-2.0 * np.log(0.01 / 0.99), rel=0.05)
     assert reader.outcome_terms(slid, still)["slides"] == pytest.approx(0.0, abs=1e-6)
+
+
+def test_of_a_model_that_slides_counts_what_a_late_camera_sees_of_it() -> None:
+    dataset = seen(HOLD, 6e-4)
+    comparison = Comparison(dataset, Simulator(dataset, 1))
+    (reader,) = comparison.readers
+    (slid,) = comparison.simulator.run([Job(0, (AdhesionCoefficient(factor=0.0),))])
+    assert slid is not None
+    # A third of the way of the robot: seen whole, by half, and not at all.
+    way_m = np.linspace(0.0, 2e-4, 11)
+    position_m = np.zeros_like(slid.position_m)
+    position_m[:, 1] = -np.interp(slid.interval_s * np.arange(len(position_m)), np.linspace(0.0, 0.2, 11), way_m)
+    shares = []
+    for late_s in (0.0, 0.1, 0.2):
+        path = replace(slid, position_m=position_m, clock_s=late_s)
+        shares.append(reader.outcome_terms(path, np.zeros(2))["slides"])
+    fitting = [reached(share, True, border=0.3) for share in (1.0 / 3.0, 1.0 / 6.0, 0.0)]
+    assert_allclose(shares, fitting, rtol=1e-6)

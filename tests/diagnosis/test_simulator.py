@@ -8,7 +8,9 @@ import pytest
 from tumblers import _core
 from tumblers.diagnosis import simulator as simulators
 from tumblers.diagnosis.simulator import Job, Simulator
+from tumblers.effects.camera_calibration import CameraCalibration
 from tumblers.effects.friction_coefficient import FrictionCoefficient
+from tumblers.field import TableField
 
 from .lab import plan
 
@@ -58,3 +60,25 @@ def test_the_oldest_makes_room_and_comes_back_the_same(monkeypatch: pytest.Monke
     assert back is not None
     np.testing.assert_array_equal(first.position_m, back.position_m)
     np.testing.assert_array_equal(first.orientation, back.orientation)
+
+
+def test_a_run_is_longer_by_as_much_as_the_camera_is_late_in_even_pieces() -> None:
+    simulator = Simulator(plan(), 1)
+    seen, late = simulator.run([Job(0), Job(0, (CameraCalibration(time_offset_s=0.13),))])
+    assert seen is not None
+    assert late is not None
+    assert late.clock_s == 0.13
+    rows = len(seen.position_m)
+    assert (len(late.position_m) - rows) * late.interval_s == pytest.approx(0.2, abs=1.01 * late.interval_s)
+    # The same motion, seen from later on; a camera that is early needs no more of it.
+    np.testing.assert_array_equal(late.position_m[:rows], seen.position_m)
+    assert simulator.scenario(Job(0, (CameraCalibration(time_offset_s=-0.13),))).run == simulator.nominal(0).run
+
+
+def test_a_late_camera_sees_a_table_s_field_to_its_end_and_no_longer() -> None:
+    table = TableField(time_s=(0.0, 0.3, 0.65), field_T=((0.0, 0.0, 0.01), (0.0, 0.01, 0.0), (0.0, 0.0, 0.01)))
+    simulator = Simulator(plan([("table", table, 0.0)]), 1)
+    assert simulator.nominal(0).run.duration_s == 0.6
+    late = Job(0, (CameraCalibration(time_offset_s=0.13),))
+    assert simulator.scenario(late).run.duration_s == 0.65
+    assert simulator.run([late])[0] is not None

@@ -108,6 +108,10 @@ def _watch(scenario: Scenario, laws: Sequence[Law], times_s: NDArray[np.float64]
     frames = np.maximum(times_s, 0.0)
     first = np.floor(frames / h * (1.0 + 1e-12)).astype(int)
     last = int(first[-1]) + 1
+    if isinstance(scenario.field, TableField):
+        # What is left of a table after its last whole step is not run.
+        last = min(last, int(scenario.field.time_s[-1] / h * (1.0 + 1e-12)))
+        first = np.minimum(first, last - 1)
     scenario = replace(scenario, run=replace(scenario.run, duration_s=last * h, output_every_s=None))
     scenario = _settled(scenario, laws, trial)
     exchanging = [law for law in laws if law.every > 0]
