@@ -12,7 +12,7 @@ from tumblers.diagnosis.attribute import attribute
 from tumblers.diagnosis.candidate import Candidate, candidates
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.fit import Fitter
-from tumblers.diagnosis.foretold import foretell
+from tumblers.diagnosis.foretold import CLIMBS, STAYS, Said, foretell
 from tumblers.diagnosis.information import information
 from tumblers.diagnosis.next_trial import next_trials
 from tumblers.diagnosis.posterior import samples
@@ -192,3 +192,25 @@ def test_slopes_are_refined_between_the_next_ones() -> None:
     finer = row[1].steeper_and_flatter(row)
     assert [c.incline_deg for c in finer] == [31.0, 32.0, 33.0, 35.0, 36.0, 37.0]
     assert [c.outside for c in finer] == [(), (), (), ("slope",), ("slope",), ("slope",)]
+
+
+def test_a_slow_field_is_given_its_two_cycles_where_the_lab_took_that_long(dataset: Dataset) -> None:
+    slow = replace(DRIVE, frequency_Hz=0.05)
+    known = replace(dataset, trials=tuple(replace(t, field=slow, duration_s=50.0) for t in dataset.trials))
+    times = {o.field.frequency_Hz: o.duration_s for o in candidates(known, 40) if isinstance(o.field, RotatingField)}
+    assert times == {0.05: 40.0, 0.15: pytest.approx(13.333), 0.5: 4.0}
+    short = replace(known, trials=tuple(replace(t, duration_s=30.0) for t in known.trials))
+    assert max(option.duration_s for option in candidates(short, 40)) == 30.0
+
+
+def test_a_robot_that_goes_downhill_climbs_nothing(dataset: Dataset, tie: Tie) -> None:
+    def said(slope: float) -> Said:
+        option = Candidate(field=DRIVE, incline_deg=slope, duration_s=2.0)
+        foretold = foretell(dataset, tie.simulator, option, [[(1, tie.simulator.run([Job(0, edit=option.edit)])[0])]])
+        assert foretold is not None
+        return foretold.said[0]
+
+    assert said(10.0).share(CLIMBS) == 1.0
+    # The same way, at as much of a level one's speed.
+    assert said(-10.0).share(STAYS) == 1.0
+    assert said(-10.0).values[0, 0] > 0.0
