@@ -188,7 +188,9 @@ def _sizes(
                 if abs(log(one.sigma / target)) < 2.0 * _CLOSE:
                     break
         if not found or (kind != "one" and max(s.sigma for s in found) < _CLEAR):
-            return [*sized, max(found, key=lambda s: s.sigma)] if found else None
+            # A first that hardly shows is no pair.
+            last = len(sized) + 1 == len(names)
+            return [*sized, max(found, key=lambda s: s.sigma)] if found and last else None
         sized.append(min(found, key=lambda s: abs(log(s.sigma / target))))
     if len(sized) > 1 and world.strength([s.law for s in sized]) is None:
         return None
