@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..dataset import Sensor
+from ..dataset.climb import way_without_slip_m
 from ..field import Field
 from ..model import Model
 from ..robot import Robot
@@ -99,6 +100,16 @@ class Lab:
         if not plan.tracked:
             return np.linspace(0.0, plan.duration_s, _OUTCOME_ROWS)
         return np.arange(int(plan.duration_s * self.frames_per_second * (1.0 + 1e-9)) + 1) / self.frames_per_second
+
+    def way_m(self, plan: Plan) -> float:
+        """Return the way without slip of a plan, m.
+
+        Parameters
+        ----------
+        plan
+            The plan.
+        """
+        return way_without_slip_m(self.robot, plan.field, plan.duration_s)
 
     def with_plans(self, plans: tuple[Plan, ...]) -> Lab:
         """Return the lab with other plans.

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from .world import Poses, Scene
 
-__all__ = ["STEEPEST_DEG", "channels_of", "climbs", "mean_speed", "rest_tilt", "turn_between"]
+__all__ = ["STEEPEST_DEG", "channels_of", "climbed_share", "mean_speed", "rest_tilt", "turn_between"]
 
 # The heading of a rod that stands up is not seen.
 STEEPEST_DEG = 75.0
@@ -57,10 +57,10 @@ def mean_speed(scene: Scene, duration_s: float) -> float:
     return float((y[-1] - y[0]) / duration_s)
 
 
-def climbs(scene: Scene, length_m: float) -> bool:
-    """Return whether the robot got on along +y, by a quarter of its length or more."""
+def climbed_share(scene: Scene, way_m: float) -> float:
+    """Return how far the robot got along +y, as a share of a way."""
     y = scene.poses.position_m[:, 1]
-    return bool(y[-1] - y[0] > 0.25 * length_m)
+    return float(y[-1] - y[0]) / way_m
 
 
 def rest_tilt(scene: Scene) -> float:

@@ -20,19 +20,17 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..camera import Camera
-from ..field import RotatingField
+from ..dataset.climb import CLIMBED, way_without_slip_m
 from ..scenario import Scenario
 from .observed import Observed
 from .pose import Path, body_axis, heading_of, relative_turn, tilt_of
 
-__all__ = ["CLIMBED", "Reader", "reached", "seen_by"]
+__all__ = ["Reader", "reached", "seen_by"]
 
 Floats = NDArray[np.float64]
 
-# Share of the way without slip from which a slope counts as climbed, share of the way slid from which a model slides as
-# well, and how blurred these borders are.
-CLIMBED, _SLIDES = 0.1, 0.3
-_BLUR = 0.05
+# Share of the way slid from which a model slides as well, and how blurred this border and that of climbing are.
+_SLIDES, _BLUR = 0.3, 0.05
 # A human who writes down the wrong outcome.
 _LAPSE = 0.01
 # The robot has come to rest in this last share of a static trial; that many moments of it are averaged.
@@ -60,9 +58,7 @@ class Reader:
     @classmethod
     def of(cls, observed: Observed, scenario: Scenario, duration_s: float) -> Reader:
         """Return the reader of a trial whose nominal scenario is given."""
-        way = scenario.robot.body().hull_perimeter_m
-        if isinstance(scenario.field, RotatingField):
-            way *= scenario.field.frequency_Hz * duration_s
+        way = way_without_slip_m(scenario.robot, scenario.field, duration_s)
         return cls(observed, duration_s, way)
 
     def beginning(self, frames: int) -> Reader:

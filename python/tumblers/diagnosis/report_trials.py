@@ -6,6 +6,7 @@ from html import escape
 from math import isfinite
 
 from ..dataset import LabTrial
+from ..dataset.climb import CLIMBED
 from ..page import data_table, figure, grid, listed, text
 from .condition import condition_of, condition_of_table
 from .diagnosis import Diagnosis
@@ -13,7 +14,6 @@ from .phrase import title_of
 from .plots.overlay import plot_overlay
 from .plots.svg import WIDTH_IN, svg_bytes
 from .quantity import plain, rounded, sigmas
-from .reading import CLIMBED
 from .result import NextTrial
 from .words import observation_words, reason_words, set_words
 
