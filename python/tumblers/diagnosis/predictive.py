@@ -1,7 +1,8 @@
 """The posterior predictive test: whether what a hypothesis leaves is no more than noise.
 
 It holds the mean squared difference, over all trials and in the worst one, against what a right model gives: the floor
-is made so that this is about 1 at most.
+is made so that this is about 1 at most. An outcome stands for itself: the many numbers of a track beside it would hide
+that it contradicts them.
 """
 
 from __future__ import annotations
@@ -11,11 +12,15 @@ from numpy.typing import NDArray
 
 from .comparison import Comparison, Residual
 from .loss import robust_cost
+from .reading import reached
 
 __all__ = ["is_right", "mean_square", "mean_squares"]
 
 # A right model's mean square over all numbers, and in its worst trial.
 _EXPLAINED, _WORST = 1.25, 2.0
+# What a climb that was seen costs a model that stays where it is, next to nothing of the way without slip: the smooth
+# likelihood near the border is for models that nearly climb.
+_AT_REST = reached(0.01, True) ** 2
 
 
 def mean_squares(residual: Residual) -> NDArray[np.float64]:
@@ -30,6 +35,19 @@ def mean_square(comparison: Comparison, residual: Residual) -> float:
 
 def is_right(comparison: Comparison, residual: Residual) -> bool:
     """Whether a hypothesis passes the test."""
-    # In a trial of few numbers noise alone gives more.
-    worst = _WORST * (1.0 + 2.0 * np.sqrt(2.0 / np.maximum(comparison.sizes, 1)))
-    return bool(mean_square(comparison, residual) <= _EXPLAINED and np.all(mean_squares(residual) <= worst))
+    trials = bool(np.all(mean_squares(residual) <= _worst(np.asarray(comparison.sizes))))
+    return trials and mean_square(comparison, residual) <= _EXPLAINED and _outcomes_agree(comparison, residual)
+
+
+def _worst(count: NDArray[np.int_]) -> NDArray[np.float64]:
+    """Return the most that a right model leaves of so many numbers: in few, noise alone gives more."""
+    return np.asarray(_WORST * (1.0 + 2.0 * np.sqrt(2.0 / np.maximum(count, 1))))
+
+
+def _outcomes_agree(comparison: Comparison, residual: Residual) -> bool:
+    most = float(_worst(np.array(1)))
+    return all(
+        robust_cost(values[floor.tracked + k : floor.tracked + k + 1]) < (_AT_REST if name == "climbs" else most)
+        for values, floor in zip(residual.trials, comparison.floors, strict=True)
+        for k, name in enumerate(floor.outcome_scale)
+    )
