@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.comparison import Comparison, Residual
 from tumblers.diagnosis.contender import Contender, of_fit
 from tumblers.diagnosis.fit import Fit, Fitter
+from tumblers.diagnosis.floor import SHARED
 from tumblers.diagnosis.held_out import HeldOut, folds, held_out, is_foretold, shrink
 from tumblers.diagnosis.hypothesis import Hypothesis
+from tumblers.diagnosis.pose import Path
 from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.field import StaticField
@@ -40,7 +42,7 @@ def wrong_by(fitter: Fitter, sigmas: Sequence[float]) -> HeldOut:
 def foretold(nominal: Sequence[float], chosen: Sequence[float], fitted: Sequence[float] | None = None) -> bool:
     fitter = fitter_of(len(nominal))
     before, after = wrong_by(fitter, nominal), wrong_by(fitter, chosen)
-    gap = shrink(fitter, before, after)
+    gap = shrink(fitter, after)
     # None of it is beyond where the loss is square.
     assert gap.after**2 == pytest.approx(np.mean(np.square(chosen)))
     # Where it is fitted it is right, if nothing else is said.
@@ -85,6 +87,30 @@ def test_a_trial_without_numbers_is_not_left_out() -> None:
 @pytest.mark.parametrize("size", [0.1, 3.0])
 def test_where_no_trial_can_be_left_out_nothing_is_foretold(size: float) -> None:
     assert not foretold([3.0], [size])
+
+
+def test_what_all_trials_share_is_not_fitted_to_a_trial_that_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    fitter, fitted = lying_and_still()
+    residual, calls = Comparison.residual, []
+
+    def noted(
+        self: Comparison,
+        paths: Sequence[Path | None],
+        train: Sequence[int] | None = None,
+        fit_nuisances: bool = True,
+        tolerance: Floats | None = None,
+    ) -> Residual:
+        calls.append((train, fit_nuisances, None if tolerance is None else tolerance.tolist()))
+        return residual(self, paths, train, fit_nuisances, tolerance=tolerance)
+
+    monkeypatch.setattr(Comparison, "residual", noted)
+    left_out = held_out(fitter, fitted)
+    assert calls == [((0,), True, None), ((1,), True, None)]
+    calls.clear()
+    # The gap of the sensor alone is that of the numbers that the lab states.
+    shrink(fitter, left_out)
+    stated = [0.0] * SHARED
+    assert calls == [(None, False, None), ((0,), True, stated), ((1,), True, stated)]
 
 
 def lying_and_still() -> tuple[Fitter, Contender]:

@@ -1,8 +1,9 @@
 """`shrink`: how far the gap shrinks on trials that no fit has seen.
 
-The trials are dealt into folds, alike conditions to different folds; each fold is left out once, and the effects'
-parameters are fitted to the others. What is no physics is fitted everywhere within its tolerance: the sensor's
-nuisances and the nominal numbers' being off. With ρ of `robust_cost` a gap is `√(Σρ/n)`.
+The trials are dealt into folds, alike conditions to different folds; each fold is left out once, and what all trials
+share is fitted to the others: the effects' parameters, the camera's heading and scale, and how far the nominal numbers
+are off. A clock and an origin are a trial's own, and are fitted to it within their tolerances. With ρ of `robust_cost`
+a gap is `√(Σρ/n)`.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from ..field import RotatingField, StaticField
 from .comparison import Residual
 from .contender import Contender
 from .fit import Fit, Fitter
+from .floor import SHARED
 from .hypothesis import PRIOR_SIGMA
 from .loss import robust_cost
 from .result import Gap, Interval
@@ -102,9 +104,24 @@ def held_out(fitter: Fitter, contender: Contender) -> HeldOut:
             paths = fitter.comparison.simulator.run([Job(i, hypothesis.effects(point)) for i in fitter.trials])
         else:
             paths = list(fitter.comparison.nominal_paths)
-        residual = fitter.comparison.residual(paths)
+        residual = fitter.comparison.residual(paths, train)
         for i in left_out or fitter.trials:
             residuals[i], points[i] = residual, point
+    return _of_all(fitter, residuals, points)
+
+
+def _sensor_alone(fitter: Fitter) -> HeldOut:
+    """Return what the nominal model with the numbers that the lab states says of every trial that is left out."""
+    comparison = fitter.comparison
+    residuals: dict[int, Residual] = {}
+    for left_out in folds(fitter) or [()]:
+        train = tuple(i for i in fitter.trials if i not in left_out)
+        residual = comparison.residual(comparison.nominal_paths, train, tolerance=np.zeros(SHARED))
+        residuals |= dict.fromkeys(left_out or fitter.trials, residual)
+    return _of_all(fitter, residuals, dict.fromkeys(fitter.trials))
+
+
+def _of_all(fitter: Fitter, residuals: dict[int, Residual], points: dict[int, Floats | None]) -> HeldOut:
     # A trial without numbers is no worse anywhere.
     anywhere = next(iter(residuals))
     return HeldOut(
@@ -165,22 +182,22 @@ def is_foretold(fitter: Fitter, nominal: HeldOut, chosen: HeldOut, gap: Gap, bes
     return not alone and after <= _NO_WORSE * sum(before)
 
 
-def shrink(fitter: Fitter, nominal: HeldOut, chosen: HeldOut, seed: int = 0) -> Gap:
-    """Return the gap before, with the nuisances fitted, and with the effects, on trials left out.
+def shrink(fitter: Fitter, chosen: HeldOut, seed: int = 0) -> Gap:
+    """Return the gap before, with the sensor's nuisances fitted, and with the effects, on trials left out.
 
     Parameters
     ----------
     fitter
         Of the dataset.
-    nominal, chosen
-        Of the nominal model and of the hypothesis with the effects.
+    chosen
+        Of the hypothesis with the effects.
     seed
         Of the bootstrap over trials.
     """
     comparison = fitter.comparison
     perfect = comparison.residual(comparison.nominal_paths, fit_nuisances=False)
     counted = list(fitter.trials)
-    costs = np.array([[robust_cost(perfect.trials[i]) for i in counted], nominal.costs(), chosen.costs()])
+    costs = np.array([[robust_cost(perfect.trials[i]) for i in counted], _sensor_alone(fitter).costs(), chosen.costs()])
     sizes = np.array([comparison.sizes[i] for i in counted], dtype=np.float64)
     before, nuisances, after = np.sqrt(costs.sum(axis=1) / max(sizes.sum(), 1.0))
     draws = np.random.default_rng(seed).integers(0, len(counted), (_RESAMPLES, len(counted)))
