@@ -7,6 +7,7 @@ from time import perf_counter
 
 import numpy as np
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
 from ..check import thread_count
 from ..dataset import Dataset
@@ -39,7 +40,7 @@ Floats = NDArray[np.float64]
 
 # Hypotheses whose gap is measured on trials left out, and how probable they must be (the best is always measured).
 _MEASURED, _PROBABLE = 3, 0.02
-# Rivals that a next trial is sought for, and draws of each.
+# Hypotheses that a next trial is sought for, and draws of each.
 _RIVALS, _SAMPLES = 6, 32
 # ln of the odds against an effect that is ruled out.
 _RULED_OUT = 4.6
@@ -91,7 +92,8 @@ def diagnose(
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
         raise InputError("seed", show(seed), "a whole number of at least 0")
     start = perf_counter()
-    with phases(progress) as tell:
+    # The sums of the linear algebra depend on its threads, and what follows from them would.
+    with threadpool_limits(1), phases(progress) as tell:
         tell("simulating the nominal model", 0, 1)
         simulator = Simulator(dataset, jobs or 0)
         comparison = Comparison(dataset, simulator)
@@ -129,11 +131,11 @@ class _Conclusion:
             tell("trials left out", k, len(considered))
             self.held_out(contender)
         best = attribution.contenders[0]
-        gap = shrink(self.fitter, nominal, self.held_out(best), self.seed)
+        gap = shrink(self.fitter, self.held_out(best), self.seed)
         foretold = is_foretold(self.fitter, nominal, self.held_out(best), gap, best)
         verdict, chosen = judge(comparison, attribution, foretold)
         if chosen is not best:
-            gap = shrink(self.fitter, nominal, nominal, self.seed)
+            gap = shrink(self.fitter, nominal, self.seed)
         tied = ties(comparison, attribution, chosen)
 
         estimates, shown = self._estimates(chosen, tied), overlays(self.fitter, nominal, self.held_out(chosen), chosen)
@@ -201,7 +203,7 @@ class _Conclusion:
         comparison = self.comparison
         left_out, shrunk = None, None
         if contender.names in self.measured:
-            gap = shrink(self.fitter, self.measured[()], self.measured[contender.names], self.seed)
+            gap = shrink(self.fitter, self.measured[contender.names], self.seed)
             left_out, shrunk = gap.after, gap.shrink.estimate
         values = contender.residual.over(self.fitter.trials)
         return RankedHypothesis(
@@ -221,7 +223,7 @@ class _Conclusion:
             for name, others in tied.items():
                 swapped = {*chosen.names} - {name}
                 rival = any(set(contender.names) == swapped | {other} for other in others)
-                if rival and contender not in rivals and contender.probability > _PROBABLE:
+                if rival and contender not in rivals:
                     rivals.append(contender)
         rivals = rivals[:_RIVALS]
         hypotheses = []
@@ -229,7 +231,8 @@ class _Conclusion:
             tell("the next trial", k, len(rivals) + 1)
             hypotheses.append((contender.names, samples(self.fitter, self.attribution, contender, _SAMPLES, self.seed)))
         tell("the next trial", len(rivals), len(rivals) + 1)
-        weights = [contender.probability for contender in rivals]
+        # What is tied by its likelihood alone may be next to improbable, and is still to be told apart.
+        weights = [max(contender.probability, _PROBABLE) for contender in rivals]
         return next_trials(self.comparison.dataset, self.comparison.simulator, hypotheses, self.seed, weights)
 
     def _ruled_out(self, chosen: Contender, tied: dict[str, tuple[str, ...]]) -> dict[str, str]:
@@ -308,7 +311,8 @@ def _assumptions(comparison: Comparison, attribution: Attribution) -> tuple[str,
         + ("" if given else " by the formats' own torque scheme")
         + " are no gap: the change to it is fitted in every hypothesis.",
         "A trial that a hypothesis cannot follow at all counts by its logarithm.",
-        "In a trial left out, the sensor's nuisances and the nominal numbers are still fitted; effects are not.",
+        "A trial left out has its own clock and origin; the camera's heading and scale, the nominal numbers and the "
+        "effects are fitted to the others.",
         f"{_weight(attribution.dispersion)} in probabilities and intervals.",
         f"Tried were {', '.join(tried)}." if tried else "No effect that was tried can be at work in these trials.",
         f"However strong the evidence, {100.0 * LAPSE:.0f} % of the probability belongs to all hypotheses alike.",
