@@ -88,6 +88,12 @@ def test_without_the_start_the_origin_has_to_be_stated(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"^sensor\.origin_px: found no such key, expected .* at 0\.04 s, when it has"):
         read(tmp_path, late)
     assert read(tmp_path, late, origin_px=[7, 7]).channels["x_m"][3] == pytest.approx(3e-5)
+    # One frame late it may be, as long as it has moved no farther than an origin may be off.
+    one = "frame,x,y\n0,,\n1,7,7\n2,11,7\n"
+    assert read(tmp_path, one).channels["x_m"][2] == pytest.approx(4e-5)
+    with pytest.raises(InputError, match=r"^sensor\.origin_px: found no such key, expected .* at 0\.02 s, when it has"):
+        read(tmp_path, one.replace("11", "13"))
+    assert read(tmp_path, one.replace("11", "13"), origin_tolerance_m=1e-4).channels["x_m"][2] == pytest.approx(6e-5)
     # A robot that is never seen has left no start.
     assert np.isnan(read(tmp_path, "frame,x,y\n0,,\n1,,\n").channels["x_m"]).all()
 

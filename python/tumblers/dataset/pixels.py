@@ -10,8 +10,9 @@ from .track import Array
 
 __all__ = ["to_substrate"]
 
-# Frames after which a robot has left its start.
-_LATE = 1.01
+# Frames by which the first that is seen may be late: as many as a clock may be off, and as many as a robot may be late
+# by that does not move farther in them than an origin may be off.
+_PUNCTUAL, _LATE = 0.51, 1.01
 
 
 def to_substrate(x_px: Array, y_px: Array, time_s: Array, sensor: Sensor) -> tuple[Array, Array]:
@@ -38,8 +39,10 @@ def to_substrate(x_px: Array, y_px: Array, time_s: Array, sensor: Sensor) -> tup
         right, down = sensor.origin_px
     elif seen.size:
         late, interval = float(time_s[seen[0]]), float(np.median(np.diff(time_s))) if time_s.size > 1 else 0.0
+        moved = 1e-6 * sensor.micrometres_per_pixel * _moved_px(x_px[seen], y_px[seen], time_s[seen])
+        left = late > _PUNCTUAL * interval and moved > sensor.origin_tolerance_m
         # Times that fall are refused with the whole track.
-        if interval >= 0.0 and late > _LATE * interval:
+        if interval >= 0.0 and (late > _LATE * interval or left):
             expected = f"the pixel of the robot's start: the first that is seen is at {late:g} s, when it has moved"
             raise InputError("sensor.origin_px", "no such key", expected)
         right, down = float(x_px[seen[0]]), float(y_px[seen[0]])
@@ -49,3 +52,11 @@ def to_substrate(x_px: Array, y_px: Array, time_s: Array, sensor: Sensor) -> tup
     (x_right, x_down), (y_right, y_down) = sensor.x_axis_px, sensor.y_axis_px
     along, across = x_px - right, y_px - down
     return scale * (x_right * along + x_down * across), scale * (y_right * along + y_down * across)
+
+
+def _moved_px(x_px: Array, y_px: Array, time_s: Array) -> float:
+    """Return how far a robot has come by the first frame that has it, at the pace of the first two, pixels."""
+    if time_s.size < 2 or time_s[1] <= time_s[0]:
+        return 0.0
+    step = float(np.hypot(x_px[1] - x_px[0], y_px[1] - y_px[0]))
+    return step * float(time_s[0]) / float(time_s[1] - time_s[0])
