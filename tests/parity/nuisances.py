@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import lsq_linear
 
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.loss import weight_of
@@ -109,29 +110,55 @@ class PlainFit:
         return np.column_stack([table[:, :5], numbers, table[:, 5] - floor.tolerance @ shared[2:]])
 
     def _improved(self, local: Floats, shared: Floats, train: Sequence[int], held: bool) -> tuple[Floats, Floats]:
-        """Return a step of Gauss and Newton's method in all nuisances at once, those of each trial eliminated."""
+        """Return a step of Gauss and Newton's method in all nuisances at once, the least within their bounds."""
         nuisances = self.comparison.nuisances
-        normal, right = np.diag(nuisances.shared_sigmas**-2.0), -(nuisances.shared_sigmas**-2.0) * shared
-        if held:
-            right[2:] = 0.0
-        blocks = {}
+        tables = {}
         for i, path in enumerate(self.paths):
-            if path is None:
-                continue
-            floor, whole = self.stretches[i].floor, self.comparison.floors[i].tracked
-            rows = self._rows(i, local[i], shared, held)
-            products = weight_of(rows[: floor.tracked, -1], whole) * (rows.T @ rows)
-            precision = nuisances.local_sigmas[i] ** -2.0
-            inverse = np.linalg.inv(products[:3, :3] + np.diag(precision))
-            by_shared, own = products[:3, 3:-1], products[:3, -1] + precision * local[i]
-            blocks[i] = inverse, by_shared, own
-            if i in train:
-                normal += products[3:-1, 3:-1] - by_shared.T @ inverse @ by_shared
-                right -= products[3:-1, -1] - by_shared.T @ inverse @ own
-        change = np.linalg.solve(normal, right)
-        local = local.copy()
-        for i, (inverse, by_shared, own) in blocks.items():
-            most = nuisances.local_bounds[i]
-            local[i] = np.clip(local[i] - inverse @ (own + by_shared @ change), -most, most)
-        low, high = nuisances.shared_bounds
-        return local, np.clip(shared + change, low, high)
+            if path is not None:
+                floor, whole = self.stretches[i].floor, self.comparison.floors[i].tracked
+                rows = self._rows(i, local[i], shared, held)
+                tables[i] = np.sqrt(weight_of(rows[: floor.tracked, -1], whole)) * rows
+        count = len(shared)
+        free = np.arange(count) < (2 if held else count)
+        low, high = (np.where(free, bound - shared, 0.0) for bound in nuisances.shared_bounds)
+        prior = np.diag(1.0 / nuisances.shared_sigmas)
+        together = [i for i in tables if i in train]
+        change, moved = np.zeros(count), np.zeros_like(local)
+        # By columns: what is shared and free, then three of each trial.
+        matrix = [np.hstack([prior, np.zeros((count, 3 * len(together)))])]
+        side = [-shared / nuisances.shared_sigmas]
+        for k, i in enumerate(together):
+            block = np.zeros((len(tables[i]) + 3, count + 3 * len(together)))
+            block[:-3, :count] = tables[i][:, 3:-1]
+            block[:-3, count + 3 * k : count + 3 * (k + 1)] = tables[i][:, :3]
+            block[-3:, count + 3 * k : count + 3 * (k + 1)] = np.diag(1.0 / nuisances.local_sigmas[i])
+            matrix.append(block)
+            side += [-tables[i][:, -1], -local[i] / nuisances.local_sigmas[i]]
+        bounds = [nuisances.local_bounds[i] for i in together]
+        lows = np.concatenate([low, *(-most - local[i] for i, most in zip(together, bounds, strict=True))])
+        highs = np.concatenate([high, *(most - local[i] for i, most in zip(together, bounds, strict=True))])
+        found = least(np.vstack(matrix), np.concatenate(side), lows, highs)
+        change = found[:count]
+        for k, i in enumerate(together):
+            moved[i] = found[count + 3 * k : count + 3 * (k + 1)]
+        for i, table in tables.items():
+            if i not in train:
+                own = np.vstack([table[:, :3], np.diag(1.0 / nuisances.local_sigmas[i])])
+                wrong = np.concatenate([-table[:, -1] - table[:, 3:-1] @ change, -local[i] / nuisances.local_sigmas[i]])
+                most = nuisances.local_bounds[i]
+                moved[i] = least(own, wrong, -most - local[i], most - local[i])
+        return local + moved, shared + change
+
+
+def least(matrix: Floats, side: Floats, low: Floats, high: Floats) -> Floats:
+    """Return the least squares within bounds, what has no room left out."""
+    out = np.where(low < high, 0.0, low)
+    free = low < high
+    # Columns of one length: an active set of unlike units is judged by rounding.
+    length = np.linalg.norm(matrix[:, free], axis=0)
+    rest = side - matrix[:, ~free] @ out[~free]
+    found = lsq_linear(
+        matrix[:, free] / length, rest, (low[free] * length, high[free] * length), method="bvls", tol=1e-14
+    )
+    out[free] = found.x / length
+    return out

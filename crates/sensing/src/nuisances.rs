@@ -10,11 +10,13 @@
 //! camera's heading `ψ` and scale `s` and the nominal numbers' being off (`η`, in their tolerances) over all trials that
 //! count. A trial that the paths are far from counts less, `w_t = 1/(1 + mean square/κ)`.
 
+use crate::bounded::{Block, least};
 use crate::loss::{huber, weight};
 use crate::measured::{Measured, dot};
 use crate::{Camera, Path, Seen, SensingError, Tolerances};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use rayon::prelude::*;
+use std::array::from_fn;
 
 const ITERATIONS: usize = 3;
 /// A trial's own nuisances: its clock, and its origin in `x` and `y`.
@@ -76,45 +78,54 @@ impl Problem<'_> {
         Ok(at)
     }
 
-    /// One step of Gauss and Newton's method.
+    /// One step of Gauss and Newton's method, the least within the bounds.
     fn improved(&self, at: &Nuisances) -> Result<Nuisances, SensingError> {
         let bounds = self.tolerances;
         let precision =
             DVector::from_iterator(at.shared.len(), bounds.shared_sigmas.iter().map(|sigma| sigma.powi(-2)));
         let mut normal = DMatrix::from_diagonal(&precision);
-        let mut right = -precision.component_mul(&DVector::from_column_slice(&at.shared));
-        if self.held {
-            right.rows_mut(CAMERA, at.shared.len() - CAMERA).fill(0.0);
-        }
+        let mut slope = precision.component_mul(&DVector::from_column_slice(&at.shared));
         let count = at.shared.len();
-        let blocks = self.each(|i, trial, path| {
-            let products = self.products(trial, path, &self.run[i].outcomes, &at.local[i], &at.shared);
-            let weights = Vector3::from(bounds.local_sigmas[i].map(|sigma| sigma.powi(-2)));
-            let own = products.fixed_view::<LOCAL, LOCAL>(0, 0) + Matrix3::from_diagonal(&weights);
-            let inverse = own.cholesky().ok_or(SensingError::Singular { trial: i })?.inverse();
-            let right = products.fixed_view::<LOCAL, 1>(0, LOCAL + count);
-            let right = right + weights.component_mul(&Vector3::from(at.local[i]));
-            Ok((products, inverse, right))
-        })?;
-        let by_shared = |products: &DMatrix<f64>| products.view((0, LOCAL), (LOCAL, count)).into_owned();
-        for (block, _) in blocks.iter().zip(self.train).filter(|(_, train)| **train) {
-            let Some((products, inverse, own)) = block else { continue };
-            let by_shared = by_shared(products);
-            let reduced = by_shared.transpose() * inverse;
-            normal += products.view((LOCAL, LOCAL), (count, count)) - &reduced * by_shared;
-            right -= products.view((LOCAL, LOCAL + count), (count, 1)) - reduced * own;
+        let products = self
+            .each(|i, trial, path| Ok(self.products(trial, path, &self.run[i].outcomes, &at.local[i], &at.shared)))?;
+        let mut blocks = Vec::with_capacity(products.len());
+        for (i, products) in products.iter().enumerate() {
+            let counted = self.train[i];
+            blocks.push(products.as_ref().map(|products| {
+                let weights = Vector3::from(bounds.local_sigmas[i].map(|sigma| sigma.powi(-2)));
+                let local = Vector3::from(at.local[i]);
+                Block {
+                    own: products.fixed_view::<LOCAL, LOCAL>(0, 0) + Matrix3::from_diagonal(&weights),
+                    by_shared: products.fixed_rows::<LOCAL>(0).columns(LOCAL, count).into_owned(),
+                    slope: products.fixed_view::<LOCAL, 1>(0, LOCAL + count) + weights.component_mul(&local),
+                    bounds: from_fn(|k| {
+                        let most = bounds.local_bounds[i][k];
+                        [-most - local[k], most - local[k]]
+                    }),
+                    counted,
+                }
+            }));
+            if let (true, Some(products)) = (counted, products) {
+                normal += products.view((LOCAL, LOCAL), (count, count));
+                slope += products.view((LOCAL, LOCAL + count), (count, 1));
+            }
         }
-        let change = normal.lu().solve(&right).ok_or(SensingError::SharedSingular)?;
+        let ends: Vec<[f64; 2]> = (0..count)
+            .map(|k| match self.held && k >= CAMERA {
+                true => [0.0; 2],
+                false => [bounds.shared_low[k] - at.shared[k], bounds.shared_high[k] - at.shared[k]],
+            })
+            .collect();
+        let (change, moved) = least(&blocks, &normal, &slope, &ends)?;
         let mut next = at.clone();
         for (k, value) in next.shared.iter_mut().enumerate() {
             *value = (*value + change[k]).clamp(bounds.shared_low[k], bounds.shared_high[k]);
         }
-        for (i, block) in blocks.iter().enumerate() {
-            let Some((products, inverse, own)) = block else { continue };
-            let moved = inverse * (own + by_shared(products) * &change);
+        for (i, changes) in moved.iter().enumerate() {
+            let Some(changes) = changes else { continue };
             for k in 0..LOCAL {
                 let most = bounds.local_bounds[i][k];
-                next.local[i][k] = (at.local[i][k] - moved[k]).clamp(-most, most);
+                next.local[i][k] = (at.local[i][k] + changes[k]).clamp(-most, most);
             }
         }
         Ok(next)
