@@ -78,7 +78,16 @@ def test_a_run_is_longer_by_as_much_as_the_camera_is_late_in_even_pieces() -> No
 def test_a_late_camera_sees_a_table_s_field_to_its_end_and_no_longer() -> None:
     table = TableField(time_s=(0.0, 0.3, 0.65), field_T=((0.0, 0.0, 0.01), (0.0, 0.01, 0.0), (0.0, 0.0, 0.01)))
     simulator = Simulator(plan([("table", table, 0.0)]), 1)
-    assert simulator.nominal(0).run.duration_s == 0.6
+    # By the last row's interval, for there is no track whose clock may be late.
+    assert simulator.nominal(0).run.duration_s == pytest.approx(0.602)
     late = Job(0, (CameraCalibration(time_offset_s=0.13),))
     assert simulator.scenario(late).run.duration_s == 0.65
     assert simulator.run([late])[0] is not None
+
+
+def test_a_path_under_a_table_ends_where_the_table_does() -> None:
+    table = TableField(time_s=(0.0, 0.3, 0.6), field_T=((0.0, 0.0, 0.01), (0.0, 0.01, 0.0), (0.0, 0.0, 0.01)))
+    simulator = Simulator(plan([("table", table, 0.0)]), 1)
+    (path,) = simulator.run([Job(0)])
+    assert path is not None
+    assert (len(path.position_m) - 1) * path.interval_s == pytest.approx(0.6)

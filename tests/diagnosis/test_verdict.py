@@ -46,7 +46,8 @@ def test_a_likelier_effect_is_named_where_the_nominal_model_leaves_a_gap_against
     nominal_is_right: bool, left: float, probability: float, foretold: bool, verdict: str
 ) -> None:
     best, nominal = contender("viscous_drag", 1.0, 0.8), contender("", left, probability)
-    comparison = SimpleNamespace(sizes=(COUNT,))
+    floors = (SimpleNamespace(tracked=COUNT, outcome_scale={}),)
+    comparison = SimpleNamespace(sizes=(COUNT,), floors=floors)
     attribution = Attribution((best, nominal), 1.0, nominal_is_right)
     found, chosen = judge(comparison, attribution, foretold)  # type: ignore[arg-type]
     assert (found, chosen) == (verdict, nominal if verdict == "no_gap" else best)

@@ -82,6 +82,11 @@ class Attribution:
         """The nominal model."""
         return next(c for c in self.contenders if not c.names)
 
+    @property
+    def doubt(self) -> float:
+        """The nominal model's probability but for its share of `LAPSE`, which is large where hypotheses are few."""
+        return self.nominal.probability - LAPSE / len(self.contenders)
+
 
 def attribute(
     comparison: Comparison, kinds: Sequence[type[Effect]], on_phase: OnPhase | None = None, seed: int = 0
@@ -101,11 +106,12 @@ def attribute(
     """
     fitter = Fitter(comparison)
     search = Search(fitter, kinds, on_phase or (lambda _phase, _done, _total: None), seed)
-    right = is_right(comparison, of_nominal(fitter).residual)
     contenders = search.contenders()
+    right = _nominal_is_right(fitter)
     ranked, dispersion = _ranked(contenders, comparison, search.names, right)
     while not comparison.simulator.resolves(ranked[0].effects):
         contenders = search.in_steps_of(ranked[0], contenders)
+        right = _nominal_is_right(fitter)
         ranked, dispersion = _ranked(contenders, comparison, search.names, right)
     if right:
         ranked = _with_tolerated(ranked, comparison)
@@ -113,6 +119,12 @@ def attribute(
     fitter.take_likeliest_noise(ranked[0].effects)
     seen = [_seen(fitter, contender, first=k == 0) for k, contender in enumerate(ranked)]
     return Attribution(tuple(seen), dispersion, right)
+
+
+def _nominal_is_right(fitter: Fitter) -> bool:
+    """Test the nominal model in the steps of the moment, against all that may be wrong around it."""
+    fitter.comparison.take_noise_of(())
+    return is_right(fitter.comparison, of_nominal(fitter).residual)
 
 
 def _with_tolerated(ranked: Sequence[Contender], comparison: Comparison) -> list[Contender]:

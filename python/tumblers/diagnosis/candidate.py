@@ -226,14 +226,14 @@ def _inclines(values: Iterable[float]) -> list[float]:
     found = sorted({0.0, *values})
     steep = 0.5 * found[-1]
     if found[-1] > 0.0:
-        found += [found[-1] + more for more in _STEEPER if found[-1] + more <= _STEEPEST_DEG]
+        found += [round(found[-1] + more, 2) for more in _STEEPER if found[-1] + more <= _STEEPEST_DEG]
     found = _some(found, _MOST_INCLINES)
     while len(found) < _MOST_INCLINES:
         gap, low = max(((b - a, a) for a, b in pairwise(found) if a >= steep), default=(0.0, 0.0))
         if gap < _FINEST_DEG:
             break
-        found = sorted([*found, low + 0.5 * gap])
-    return [round(v, 1) for v in found]
+        found = sorted([*found, round(low + 0.5 * gap, 1)])
+    return found
 
 
 def _some(values: list[Any], most: int) -> list[Any]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import isfinite
 
+from ..effects.catalogue import CATALOGUE
 from .diagnosis import Diagnosis
 from .phrase import meaning_of, title_of
 from .plausible import neutral_values, plausible_ranges
@@ -39,7 +40,11 @@ def _of_effects(diagnosis: Diagnosis) -> list[str]:
                 f"{title_of(effect.name)} has a probability of {percent(effect.probability)} only: see the ranking."
             )
         ranges, neutral = plausible_ranges(diagnosis, effect.name), neutral_values(effect.name)
+        turning = {p.key for p in CATALOGUE[effect.name].parameters if p.turns} if effect.name in CATALOGUE else set()
         for key, interval in effect.parameters.items():
+            # An angle that turns on has no end.
+            if key in turning:
+                continue
             low, high = ranges.get(key, (-float("inf"), float("inf")))
             margin = _AT_END * (high - low)
             if isfinite(margin) and not low + margin <= interval.estimate <= high - margin:

@@ -306,7 +306,8 @@ def _outcome_change(reader: Reader, path: Path | None, other: Path | None) -> di
 
 
 def _rms(reader: Reader, change: Mapping[str, Floats]) -> float:
-    scaled = [values / reader.observed.noise[name] for name, values in change.items()]
+    # Where a channel is lost it has no change.
+    scaled = [values[reader.observed.found(name)] / reader.observed.noise[name] for name, values in change.items()]
     return float(np.sqrt(np.mean(np.concatenate(scaled) ** 2))) if scaled else 0.0
 
 

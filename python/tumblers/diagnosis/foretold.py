@@ -114,7 +114,7 @@ def foretell(
                 up = CLIMBS if option.incline_deg > 0.0 and chance > 0.5 else STAYS
                 gone = abs(speed) > _GONE * level
                 values.append([speed, drift])
-                events.append((SLIDES if speed < 0.0 else RUNS) if gone else up)
+                events.append((SLIDES if speed * option.incline_deg < 0.0 else RUNS) if gone else up)
                 climbs.append(chance)
             else:
                 rest = np.linspace((1.0 - _REST_SHARE) * time, time, 16)

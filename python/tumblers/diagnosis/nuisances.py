@@ -106,6 +106,8 @@ class NuisanceFit:
     def enough(self, local: Floats) -> set[Nuisance]:
         """Return the nuisances of the trials whose tolerances are enough, most trials' not being at an end.
 
+        Of a single trial they always are: nothing else tells a late clock from a slow robot.
+
         Parameters
         ----------
         local

@@ -25,6 +25,7 @@ __all__ = [
     "against_itself",
     "against_the_best",
     "beside",
+    "by_itself",
     "each_by_itself",
     "settled",
 ]
@@ -127,7 +128,7 @@ def _settled(fitter: Fitter, contender: Contender) -> Contender:
         best = other
     assert best.fit is not None
     # The derivatives where it is, against its own noise.
-    return _by_itself(fitter, best, evaluations=1)
+    return by_itself(fitter, best, evaluations=1)
 
 
 def each_by_itself(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase) -> list[Contender]:
@@ -151,13 +152,24 @@ def each_by_itself(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhas
         if not waiting:
             break
         tell("each against its own noise", min(count, _MOST_NEAR), _MOST_NEAR)
-        made[waiting[0]] = _by_itself(fitter, made[waiting[0]], IDLE_POINTS)
+        made[waiting[0]] = by_itself(fitter, made[waiting[0]], IDLE_POINTS)
         made = likeliest_first(made)
         count += 1
     return made
 
 
-def _by_itself(fitter: Fitter, contender: Contender, evaluations: int) -> Contender:
+def by_itself(fitter: Fitter, contender: Contender, evaluations: int) -> Contender:
+    """Hold a contender against its own noise and fit it on, its derivatives where it ends.
+
+    Parameters
+    ----------
+    fitter
+        Of the dataset.
+    contender
+        Not the nominal model.
+    evaluations
+        Trial points of the fit at most; of one, only the derivatives are taken.
+    """
     assert contender.fit is not None
     fitter.take_likeliest_noise(contender.effects)
     fit = fitter.fit(contender.fit.hypothesis, contender.point, evaluations=evaluations)

@@ -16,7 +16,7 @@ from ..effects.base import Effect
 from .contender import Contender, likeliest_first, of_fit
 from .fit import Fitter
 from .hypothesis import Hypothesis
-from .own_noise import against_itself
+from .own_noise import by_itself
 from .step_credit import step_credit
 from .thresholds import CLEAR
 
@@ -71,6 +71,9 @@ class Pairs:
         singles
             Those that may be the second, by themselves.
         """
+        if not first.settled:
+            # Its differences and derivatives are against another noise.
+            first = by_itself(self.fitter, first, evaluations=1)
         assert first.fit is not None
         self.fitter.take_likeliest_noise(first.effects)
         # What each is by itself is one more start.
@@ -134,7 +137,7 @@ def firsts(singles: Sequence[Contender]) -> list[Contender]:
 def single_of(
     fitter: Fitter, possible: Sequence[Hypothesis], pair: Contender, kind: type[Effect], evaluations: int
 ) -> Contender:
-    """Return one effect of a pair, fitted from where it is within it, as a contender of its own.
+    """Return one effect of a pair, fitted from where it is within it, as a contender of its own, settled.
 
     Parameters
     ----------
@@ -152,4 +155,7 @@ def single_of(
     assert pair.fit is not None
     hypothesis = next(h for h in possible if h.kinds == (kind,))
     mine = np.array([name == kind.name for name, _ in pair.fit.hypothesis.keys])
-    return against_itself(fitter, fitter.fit(hypothesis, pair.point[mine], evaluations=evaluations))
+    start = pair.point[mine]
+    fitter.take_likeliest_noise(hypothesis.effects(start))
+    fit = fitter.fit(hypothesis, start, evaluations=evaluations)
+    return by_itself(fitter, of_fit(fitter, fit), evaluations=1)

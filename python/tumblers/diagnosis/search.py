@@ -170,8 +170,7 @@ class Search:
             return single
         assert single.fit is not None
         (kind,) = single.fit.hypothesis.kinds
-        alone = single_of(self.fitter, self.possible, pair, kind, POLISH_POINTS)
-        return likeliest([single, replace(alone, settled=True)])
+        return likeliest([single, single_of(self.fitter, self.possible, pair, kind, POLISH_POINTS)])
 
     def _singles(self, nominal: Contender) -> list[Contender]:
         self.tell("first look at every effect", 0, 1)

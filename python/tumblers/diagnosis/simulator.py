@@ -121,12 +121,9 @@ class Simulator:
         if key not in self._nominal:
             lab = self.dataset.trials[trial]
             scenario = lab.scenario(self.dataset, key[1], model=self.model)
-            if not isinstance(lab.field, TableField):
-                interval = lab.track.frame_interval_s if lab.track is not None and lab.track.time_s.size > 1 else 0.0
-                late = max(interval, self.dataset.sensor.time_offset_s or 0.0)
-                longer = lab.duration_s + late + _LONGEST_INTERVAL_S
-                scenario = replace(scenario, run=replace(scenario.run, duration_s=longer))
-            self._nominal[key] = scenario
+            interval = lab.track.frame_interval_s if lab.track is not None and lab.track.time_s.size > 1 else 0.0
+            late = max(interval, self.dataset.sensor.time_offset_s or 0.0)
+            self._nominal[key] = _longer(scenario, late + _LONGEST_INTERVAL_S)
         return self._nominal[key]
 
     def scenario(self, job: Job) -> Scenario:
@@ -153,10 +150,7 @@ class Simulator:
         late = scenario.camera.time_offset_s
         if late > 0.0:
             # In even pieces, so that a clock that is fitted does not ask for another run at every step.
-            longer = scenario.run.duration_s + _PIECE_S * ceil(late / _PIECE_S)
-            if isinstance(scenario.field, TableField):
-                longer = max(min(longer, scenario.field.time_s[-1]), scenario.run.duration_s)
-            scenario = replace(scenario, run=replace(scenario.run, duration_s=longer))
+            scenario = _longer(scenario, _PIECE_S * ceil(late / _PIECE_S))
         return scenario
 
     def coarse(self, scenario: Scenario) -> Scenario:
@@ -269,8 +263,9 @@ class Simulator:
     def _path(self, scenario: Scenario, rollout: _core._Rollout, every: int) -> Path | None:
         if rollout["error"] is not None:
             return None
-        # The last row may be off the even times; a robot that left all bounds has fewer.
-        rows = min(scenario.run.steps // every + 1, len(rollout["time_s"]) - 1)
+        # The last row may be off the even times; a robot that left all bounds has fewer, and its last one may be.
+        even, found = scenario.run.steps // every + 1, len(rollout["time_s"])
+        rows = even if found >= even else found - 1
         if rows < 2:
             return None
         position = rollout["position_m"][:rows]
@@ -289,6 +284,14 @@ class Simulator:
             contact_mode=rollout["contact_mode"][:rows],
             clock_s=scenario.camera.time_offset_s,
         )
+
+
+def _longer(scenario: Scenario, time_s: float) -> Scenario:
+    """Return a scenario that goes on for a time, at most to the end of its field's table."""
+    duration = scenario.run.duration_s + time_s
+    if isinstance(scenario.field, TableField):
+        duration = max(min(duration, scenario.field.time_s[-1]), scenario.run.duration_s)
+    return replace(scenario, run=replace(scenario.run, duration_s=duration))
 
 
 def _size(rollout: _core._Rollout) -> int:

@@ -52,8 +52,10 @@ def beyond_thresholds(fitter: Fitter, hypothesis: Hypothesis, nominal: Residual)
         end * unit for ends in (hypothesis.low, hypothesis.high) for end, unit in zip(ends, np.eye(count), strict=True)
     ]
     found: list[tuple[float, Floats]] = []
+    zeros = np.zeros(count)
     for i in wrong:
-        still = fitter.cost(nominal, np.zeros(count), (i,))
+        # With what all trials share fitted to this one alone, as along the lines.
+        still = fitter.cost(fitter.residuals(hypothesis, [zeros], (i,))[0], zeros, (i,))
         lines = [_along(fitter, hypothesis, end, still, i) for end in ends if np.any(end)]
         found += [(cost - still, point) for cost, point in lines if cost < still - CLEAR]
     return [point for _, point in sorted(found, key=lambda entry: entry[0])[:_HINTS]]

@@ -32,7 +32,7 @@ def judge(comparison: Comparison, attribution: Attribution, foretold: bool) -> t
     """
     nominal, best = attribution.nominal, attribution.contenders[0]
     # What is wide enough around the nominal model hides a gap: where another is likelier, against its noise too.
-    doubtful = nominal.probability > _LEAST_DOUBT and is_right(comparison, nominal.residual)
+    doubtful = attribution.doubt > _LEAST_DOUBT and is_right(comparison, nominal.residual)
     if attribution.nominal_is_right and (not best.names or doubtful):
         return "no_gap", nominal
     if not best.names:

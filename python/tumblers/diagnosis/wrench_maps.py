@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from math import inf
+from math import ceil, inf, log10
 
 import numpy as np
 
@@ -18,6 +18,8 @@ __all__ = ["mapped", "wrench_regions"]
 
 _PHASES = 8
 _PLACES = 6
+# What places are told apart by at most, over all of them, m.
+_LEAST_M = 1e-6
 _COMPONENTS = ("x", "y", "z")
 _SIGNIFICANT = 3.0
 
@@ -39,10 +41,12 @@ def mapped(dataset: Dataset, windows: Sequence[Windows]) -> MissingWrench:
         label, centre = f"{b * width:.0f}–{(b + 1) * width:.0f}°", (b + 0.5) * width / 360.0
         phases[label] = [_at_phase(labs[w.trial].field, w, centre) for w in windows]
     places = np.concatenate([w.place_y_m for w in windows])
-    ends = np.linspace(places.min(), max(places.max(), places.min() + 1e-12), _PLACES + 1)
+    ends = np.linspace(places.min(), max(places.max(), places.min() + _LEAST_M), _PLACES + 1)
     ends[-1] = inf
+    # As many digits as tell one end from the next.
+    digits = max(1, ceil(-log10(1e3 * (ends[1] - ends[0]))))
     by_place = {
-        f"{1e3 * low:.1f}–{1e3 * min(high, places.max()):.1f} mm": [
+        f"{1e3 * low:.{digits}f}–{1e3 * min(high, places.max()):.{digits}f} mm": [
             [k for k, y in enumerate(w.place_y_m) if low <= y < high] for w in windows
         ]
         for low, high in pairwise(ends)
