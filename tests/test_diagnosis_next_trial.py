@@ -12,7 +12,7 @@ from tumblers.diagnosis.attribute import attribute
 from tumblers.diagnosis.candidate import Candidate, candidates
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.fit import Fitter
-from tumblers.diagnosis.foretold import CLIMBS, STAYS, Said, foretell
+from tumblers.diagnosis.foretold import CLIMBS, RUNS, SLIDES, STAYS, Said, foretell
 from tumblers.diagnosis.information import information
 from tumblers.diagnosis.next_trial import next_trials
 from tumblers.diagnosis.posterior import samples
@@ -214,3 +214,24 @@ def test_a_robot_that_goes_downhill_climbs_nothing(dataset: Dataset, tie: Tie) -
     # The same way, at as much of a level one's speed.
     assert said(-10.0).share(STAYS) == 1.0
     assert said(-10.0).values[0, 0] > 0.0
+
+
+def test_what_runs_away_backwards_on_the_level_does_not_slide(dataset: Dataset, tie: Tie) -> None:
+    def event(slope: float, way_m: float) -> set[int]:
+        option = Candidate(field=DRIVE, incline_deg=slope, duration_s=2.0)
+        (path,) = tie.simulator.run([Job(0, edit=option.edit)])
+        assert path is not None
+        position = np.zeros_like(path.position_m)
+        position[:, 1] = np.linspace(0.0, way_m, len(position))
+        foretold = foretell(dataset, tie.simulator, option, [[(1, replace(path, position_m=position))]])
+        assert foretold is not None
+        return set(foretold.said[0].events.tolist())
+
+    assert event(0.0, -0.1) == event(0.0, 0.1) == event(20.0, 0.1) == event(-20.0, -0.1) == {RUNS}
+    assert event(20.0, -0.1) == event(-20.0, 0.1) == {SLIDES}
+
+
+def test_a_lab_s_own_slope_is_within_its_ranges(dataset: Dataset) -> None:
+    known = replace(dataset, trials=tuple(replace(t, incline_deg=22.26) for t in dataset.trials))
+    inside = [option for option in candidates(known, 40) if not option.outside]
+    assert {option.incline_deg for option in inside} == {22.26}

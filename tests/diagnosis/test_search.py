@@ -3,23 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from tumblers.diagnosis.beginnings import from_beginnings, promise
-from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.comparison import Comparison, Residual
 from tumblers.diagnosis.contender import of_fit, of_nominal
 from tumblers.diagnosis.fit import Fitter
 from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.loss import FAR, robust_cost
 from tumblers.diagnosis.own_noise import against_itself, against_the_best, beside
-from tumblers.diagnosis.pairs import firsts
+from tumblers.diagnosis.pairs import Pairs, firsts
 from tumblers.diagnosis.search import Search
 from tumblers.diagnosis.simulator import STEPS_S, Job, Simulator
 from tumblers.diagnosis.step_credit import step_credit
-from tumblers.diagnosis.thresholds import CLEAR
+from tumblers.diagnosis.thresholds import CLEAR, beyond_thresholds
 from tumblers.effects.base import Effect
 from tumblers.effects.catalogue import CATALOGUE
 from tumblers.effects.contact_compliance import ContactCompliance
@@ -197,6 +198,46 @@ def test_a_threshold_in_a_range_is_found_far_from_neutral_and_near(slope_deg: fl
     (found,) = best.effects
     assert isinstance(found, FrictionCoefficient)
     assert found.factor == pytest.approx(truth.factor, rel=0.01)
+
+
+def test_a_threshold_of_one_trial_is_found_beside_others_whose_cameras_are_off() -> None:
+    # The others' nuisances are at their ends, and what that costs is none of this trial's.
+    truth = FrictionCoefficient(factor=_sliding_factor())
+    dataset = measure(plan([*LYING, *PLANS[:3]]), (truth,), origin_m=2e-4, clock_frames=0.6)
+    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
+    nominal = of_nominal(fitter).residual
+    assert float(np.sum(nominal.prior**2)) > CLEAR
+    hypothesis = Hypothesis.of(FrictionCoefficient, [fitter.comparison.simulator.nominal(i) for i in fitter.trials])
+    first, *_ = beyond_thresholds(fitter, hypothesis, nominal)
+    (found,) = hypothesis.effects(first)
+    assert isinstance(found, FrictionCoefficient)
+    assert found.factor == pytest.approx(truth.factor, rel=0.01)
+
+
+def test_a_first_of_a_pair_is_held_against_its_own_noise(monkeypatch: pytest.MonkeyPatch) -> None:
+    fitter = _coarse_lab(SizeError(length_factor=1.03))
+    fitter.take_likeliest_noise(())
+    possible = [
+        Hypothesis.of(kind, [fitter.comparison.simulator.nominal(i) for i in fitter.trials])
+        for kind in (SizeError, FrictionCoefficient)
+    ]
+    singles = [
+        of_fit(fitter, fitter.fit(h, np.full(len(h.neutral), 0.01 * k), evaluations=1))
+        for k, h in enumerate(possible, 1)
+    ]
+    seen: list[Any] = []
+    scan = Fitter.scan
+
+    def noted(self: Fitter, hypotheses: Any, base: Any, still: Residual, slopes: Any) -> Any:
+        seen.append((still, self.again(replace(singles[0].fit, point=base[0][: len(possible[0].neutral)])).residual))
+        return scan(self, hypotheses, base, still, slopes)
+
+    monkeypatch.setattr(Fitter, "scan", noted)
+    Pairs(fitter, possible, {}).add(singles[0], singles)
+    ((still, own),) = seen
+    for found, expected in zip(still.trials, own.trials, strict=True):
+        assert_allclose(found, expected, rtol=1e-9, atol=1e-9)
+    assert not np.allclose(still.over(fitter.trials), singles[0].residual.over(fitter.trials), rtol=1e-6)
 
 
 def _sliding_factor(slope_deg: float = 50.0) -> float:

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tumblers.diagnosis.attribute import REFUSED, Attribution, _ranked
+from tumblers.diagnosis.attribute import LAPSE, REFUSED, Attribution, _ranked
 from tumblers.diagnosis.comparison import Comparison, Residual
 from tumblers.diagnosis.contender import Contender, of_fit, of_nominal
 from tumblers.diagnosis.fit import Fitter
@@ -40,6 +40,8 @@ def contender(name: str, left: float, probability: float) -> Contender:
         (True, 1.7, 0.2, True, "explained"),
         (False, 1.0, 0.2, True, "explained"),
         (False, 1.0, 0.2, False, "unexplained"),
+        # Of two hypotheses each has half of what is shared by all: that alone is no doubt.
+        (True, 1.0, 0.5 * LAPSE, True, "explained"),
     ],
 )
 def test_a_likelier_effect_is_named_where_the_nominal_model_leaves_a_gap_against_either_noise(
