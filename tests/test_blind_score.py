@@ -154,9 +154,10 @@ def test_scores_are_those_computed_by_hand() -> None:
     # 0: 1/2, 1: 1/3; nothing pointed out in 2, 4, 5, 6, 9, 10 and 12.
     assert scores.overlaps["dataset-000"] == 0.5
     assert scores.overlaps["dataset-001"] == pytest.approx(1 / 3)
-    assert value(scores, "where") == pytest.approx(1 / len(scores.overlaps))
     # 10: 0.4 of 0.6 s; 12: 0.6 of 2 s.
     assert (scores.regions["time_s"].hits, scores.regions["time_s"].count) == (1, 2)
+    # Trials and regions together.
+    assert value(scores, "where") == pytest.approx((1 + 1) / (len(scores.overlaps) + 2))
     assert value(scores, "longest") is None, "nothing was diagnosed again"
     assert value(scores, "diagnosed again") is None
     assert scores.seconds_longest == 200.0
@@ -286,3 +287,13 @@ def test_explanations_that_foretell_the_same_do_not_differ() -> None:
     # A force that pulls it off the substrate cannot be compared.
     lifted = [EffectLaw(effect_of("electrostatic_force", {"added_force_N": -1.0}))]
     assert difference_sigma(data, lifted, []) == float("inf")
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "hit"), [(330.0, 470.0, True), (300.0, 480.0, True), (0.0, 120.0, True), (120.0, 240.0, False)]
+)
+def test_a_region_across_the_end_of_the_cycle_overlaps_one_at_its_beginning(low: float, high: float, hit: bool) -> None:
+    truth = answer("outside", ("amplifier_dropout", "outside", {}), where={"cycle_phase_deg": (350.0, 460.0)})
+    pointed = {"axis": "cycle_phase_deg", "low": low, "high": high, "share_of_gap": 1.0}
+    scores = score_records([record(0, truth, said("unexplained", where=(pointed,)))], 1, lambda _: 0.0)
+    assert (scores.regions["cycle_phase_deg"].hits, scores.regions["cycle_phase_deg"].count) == (int(hit), 1)

@@ -8,10 +8,13 @@ import pytest
 from tumblers import preset_scenario, simulate
 from tumblers.blind.cause import CatalogueCause, OutsideCause
 from tumblers.blind.forms import FORMS, scaled
+from tumblers.blind.lab import Lab, Plan
 from tumblers.blind.law import EffectLaw, Law
 from tumblers.blind.outside import OUTSIDE
+from tumblers.blind.sensing import Nuisances, measure
 from tumblers.blind.view import channels_of, turn_between
 from tumblers.blind.world import Scene, watch
+from tumblers.dataset import Sensor
 from tumblers.effects.base import Effect
 from tumblers.effects.camera_calibration import CameraCalibration
 from tumblers.effects.catalogue import CATALOGUE
@@ -64,6 +67,31 @@ def test_exchanging_equal_trials_changes_nothing() -> None:
         every = 8
 
     assert gap_m(watch(flat(), [Nothing()], TIMES, solver="reduced"), watch(flat(), (), TIMES, solver="reduced")) < 1e-9
+
+
+@pytest.mark.parametrize(("share", "climbs"), [(0.09, False), (0.11, True)])
+def test_a_lab_notes_a_climb_by_the_rule_of_the_format(share: float, climbs: bool) -> None:
+    plan = Plan(id="up", field=RotatingField(strength_T=0.01, frequency_Hz=3.0), duration_s=1.0, tracked=False)
+    plan = replace(plan, outcome="climbs")
+    lab = Lab(
+        robot=flat().robot,
+        substrate=flat().substrate,
+        sensor=Sensor(position_noise_m=3e-6, angle_noise_deg=1.0),
+        channels=(),
+        frames_per_second=60.0,
+        view_m=0.02,
+        step_s=STEP_S,
+        plans=(plan,),
+    )
+    scene = watch(lab.scenario(plan), (), lab.frames(plan), solver="reduced")
+    # Three turns: three perimeters without slip.
+    way_m = 3.0 * share * lab.robot.body().hull_perimeter_m
+    way_m = np.linspace(0.0, way_m, len(scene.time_s))[:, None] * np.array([0.0, 1.0, 0.0])
+    seen = replace(scene, poses=replace(scene.poses, position_m=way_m))
+    rng = np.random.default_rng(0)
+    trial = measure(lab, 0, seen, replace(Nuisances.draw(rng, lab), scale=1.0, heading_deg=0.0), rng)
+    assert trial.outcome is not None
+    assert trial.outcome.climbs == climbs
 
 
 def test_a_camera_whose_clock_is_late_films_later_poses_and_leaves_the_field_s_times_as_they_are() -> None:

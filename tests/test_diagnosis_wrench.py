@@ -11,6 +11,8 @@ from tumblers.diagnosis.pose import body_axis, tilt_of
 from tumblers.diagnosis.result import MissingWrench
 from tumblers.diagnosis.simulator import Job, Simulator
 from tumblers.diagnosis.wrench import missing_wrench, wrench_regions
+from tumblers.diagnosis.wrench_maps import mapped
+from tumblers.diagnosis.wrench_means import Windows
 from tumblers.model import Model
 from tumblers.presets import ROBOTS, SUBSTRATES, drive
 from tumblers.scenario import Scenario
@@ -100,6 +102,25 @@ def test_windows_cover_the_tracks() -> None:
     assert missing.by_mode
     assert missing.by_place
     assert missing.by_phase
+
+
+@pytest.mark.parametrize("span_m", [0.0, 3e-6, 4e-4, 2e-2])
+def test_every_window_has_its_place_however_short_the_way(span_m: float) -> None:
+    dataset = lab(0.0, 5, (1.0,))
+    count = 6
+    place = np.linspace(0.0, span_m, count)
+    window = Windows(
+        trial=0,
+        start_s=np.arange(count) * 0.1,
+        end_s=np.arange(1, count + 1) * 0.1,
+        mode=("point",) * count,
+        place_y_m=place,
+        wrench=np.ones((count, 6)),
+        information=np.eye(6 * count),
+        prior_sigma=np.ones(6),
+    )
+    by_place = mapped(dataset, [window]).by_place
+    assert len(by_place) == (1 if span_m == 0.0 else count)
 
 
 def test_outcomes_alone_have_no_wrench() -> None:

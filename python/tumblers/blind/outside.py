@@ -263,8 +263,7 @@ class AmplifierDropout(Outside):
 
     def where(self) -> Region:
         """Return the part of the cycle."""
-        last = self.phase + self.size / 3.0
-        return {} if last > 1.0 else {"cycle_phase_deg": (360.0 * self.phase, 360.0 * last)}
+        return {"cycle_phase_deg": (360.0 * self.phase, 360.0 * (self.phase + self.size / 3.0))}
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from math import inf
 from os import PathLike
@@ -184,8 +184,10 @@ def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores
     tied = [hit or _is_tie(r, tie) for hit, r in zip(first, clear, strict=True)]
     reliability, calibration_error = _calibration(records)
     coverage = _coverage(records)
-    covered = Share(sum(s.hits for s in coverage.values()), sum(s.count for s in coverage.values()))
+    covered = _all(coverage.values())
     overlaps = {r.dataset: overlap for r in records if (overlap := _overlap(r)) is not None}
+    regions = _regions(records)
+    found = [_count([overlap >= 0.5 for overlap in overlaps.values()]), *regions.values()]
     shrinks = {
         same: [s for r in clear if r.same_form == same and (s := _shrink(r)) is not None] for same in (True, False)
     }
@@ -218,7 +220,7 @@ def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores
         ),
         middle("median shrink, the catalogue's form", shrinks[True], 0.9),
         middle("median shrink, another form", shrinks[False], 0.7),
-        criterion("where: trials overlap by half or more", _count([o >= 0.5 for o in overlaps.values()]), 0.80),
+        criterion("where: trials and other regions overlapped by half or more", _all(found), 0.80),
         Criterion(
             words="longest of the slowest again, alone, s",
             value=max(repeated) if repeated else None,
@@ -245,7 +247,7 @@ def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores
         calibration_error=calibration_error,
         coverage_by_effect=coverage,
         overlaps=overlaps,
-        regions=_regions(records),
+        regions=regions,
         seconds_mean=mean(seconds) if seconds else None,
         seconds_longest=max(seconds) if seconds else None,
         threads=max((r.threads for r in records), default=1),
@@ -255,6 +257,11 @@ def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores
         rows=tuple(_row(r) for r in records),
         drawn=len(records),
     )
+
+
+def _all(shares: Iterable[Share]) -> Share:
+    each = list(shares)
+    return Share(sum(share.hits for share in each), sum(share.count for share in each))
 
 
 def _count(hits: Sequence[bool]) -> Share:
@@ -383,7 +390,10 @@ def _regions(records: Sequence[Record]) -> dict[str, Share]:
                 for entry in record.diagnosis["where"]
                 if entry["axis"] == axis and entry.get("low") is not None and entry.get("high") is not None
             ]
-            found.setdefault(axis, []).append(any(_shared((low, high), region) >= 0.5 for region in said))
+            # A region across the cycle's end goes on beyond 360 degrees.
+            turns = (-360.0, 0.0, 360.0) if axis == "cycle_phase_deg" else (0.0,)
+            true = [(low + turn, high + turn) for turn in turns]
+            found.setdefault(axis, []).append(any(_shared(one, region) >= 0.5 for one in true for region in said))
     return {axis: _count(hits) for axis, hits in sorted(found.items())}
 
 
