@@ -27,7 +27,7 @@ def diagnose(
         list[str] | None,
         typer.Option(
             metavar="NAME,..|FILE.py",
-            help="Effects to try, files of your own among them; the whole catalogue without it.",
+            help="Effects to try: names, files of your own, `catalogue` for all of it (the default).",
         ),
     ] = None,
     jobs: Annotated[int | None, typer.Option(help="Threads; all by default. The result does not depend on it.")] = None,
@@ -69,11 +69,15 @@ def diagnose(
 
 
 def _effect_names(texts: list[str]) -> list[str]:
-    from .effects.catalogue import get, load_file
+    from .effects.catalogue import CATALOGUE, get, load_file
 
     names: list[str] = []
+    # Before a file adds its own to it.
+    listed = list(CATALOGUE)
     for word in (word.strip() for text in texts for word in text.split(",")):
-        if word.endswith(".py"):
+        if word == "catalogue":
+            names += listed
+        elif word.endswith(".py"):
             names += [effect.name for effect in load_file(word)]
         else:
             names.append(get(word, "--effects").name)

@@ -121,6 +121,43 @@ def test_the_command_writes_the_files_and_prints_the_summary(
     assert computation.asked == asked
 
 
+def test_the_whole_catalogue_can_be_tried_beside_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    lab().save(tmp_path / "data")
+    own = tmp_path / "own.py"
+    own.write_text(
+        """
+from dataclasses import dataclass
+from typing import ClassVar
+
+from tumblers.effects import Effect, Parameter
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Hum(Effect):
+    \"\"\"The coils hum.\"\"\"
+
+    name: ClassVar[str] = "hum"
+    source: ClassVar[str] = "nobody"
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter(key="share", neutral=0.0, low=0.0, high=1.0, unit="1", meaning="loudness"),
+    )
+
+    share: float = 0.0
+
+    def act(self, scenario):
+        return scenario
+"""
+    )
+    listed = list(CATALOGUE)
+    computation = Computation(monkeypatch, small())
+    try:
+        arguments = ("--out", tmp_path / "out", "--effects", f"catalogue,{own}", "--effects", "catalogue")
+        assert command(monkeypatch, tmp_path / "data", *arguments) == 0
+    finally:
+        CATALOGUE.pop("hum", None)
+    assert computation.asked["effects"] == [*listed, "hum"]
+
+
 @pytest.mark.parametrize(("error", "status"), [(KeyboardInterrupt(), 130), (OSError(28, "No space left"), 1)])
 def test_what_fails_or_is_interrupted_leaves_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: BaseException, status: int

@@ -12,11 +12,7 @@ import pytest
 
 from tumblers.diagnosis.phrase import phrase_of, title_of
 from tumblers.diagnosis.quantity import percent, rounded, with_interval
-from tumblers.diagnosis.result import (
-    EffectEstimate,
-    Interval,
-    Region,
-)
+from tumblers.diagnosis.result import EffectEstimate, Interval, RankedHypothesis, Region
 from tumblers.diagnosis.words import headline, points, summary
 from tumblers.effects.catalogue import CATALOGUE
 
@@ -40,6 +36,17 @@ def test_the_verdict_is_one_sentence_a_student_understands() -> None:
     partial = headline(made(verdict="unexplained", ranking=wide))
     assert "The best partial cause is that the robot is pulled along +y" in partial
     assert "with it, 1.1 σ are left" in partial
+
+
+def test_where_there_is_no_gap_what_is_left_is_told_and_what_is_likelier_all_the_same() -> None:
+    told = dict(points(no_gap()))
+    assert "caution" not in told
+    gap = replace(no_gap().gap, before=4.0, after_nuisance_only=1.2, after=1.1)
+    ranking = (RankedHypothesis(("viscous_drag",), 0.8, 3.0, 1.0, None, None), *no_gap().ranking)
+    told = dict(points(replace(no_gap(), gap=gap, ranking=ranking)))
+    assert "viscous drag has a probability of 80 %, but the nominal model follows the data" in told["caution"]
+    (left,) = (text for text in told.values() if "numbers as stated" in text)
+    assert left.index("1.1") < left.index("4") < left.index("1.2")
 
 
 def test_two_effects_are_both_named() -> None:

@@ -31,7 +31,8 @@ def page_of(scores: Scores) -> str:
         f"diagnosed by version {versions}; those not tried do not count below."
         " Every answer was sealed before the diagnosis and its seal checked after it. Made by\n\n"
         f"```\ntumblers blind make --seed {scores.seed} --count {scores.drawn} --out DIR\n"
-        "tumblers blind run DIR\ntumblers blind score DIR --answers DIR/answers.json --page blind-results.md\n```",
+        "tumblers blind run DIR\ntumblers blind repeat DIR\n"
+        "tumblers blind score DIR --answers DIR/answers.json --page blind-results.md\n```",
         "The strength of a cause is the root mean square of what it changes in all numbers that were observed, in "
         "standard deviations of their noise, after the sensor's stated tolerances (origin, clock, heading, scale) have "
         "taken what they can.",

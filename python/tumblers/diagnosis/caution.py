@@ -57,6 +57,13 @@ def _of_effects(diagnosis: Diagnosis) -> list[str]:
                 )
         if effect.name == "camera_calibration":
             said.append("a camera that is off is a gap of the measurement: calibrate it before any physics is added.")
+    likeliest = diagnosis.ranking[0]
+    if diagnosis.verdict == "no_gap" and likeliest.effects:
+        names = " with ".join(title_of(name) for name in likeliest.effects)
+        said.append(
+            f"{names} has a probability of {percent(likeliest.probability)}, but the nominal model follows the data to "
+            "within noise too: less noise or other trials would tell."
+        )
     if diagnosis.verdict == "unexplained" and diagnosis.effects:
         said.append("the partial cause may be wrong altogether: it only follows the data better than the others.")
     return said

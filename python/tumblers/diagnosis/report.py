@@ -95,11 +95,13 @@ def _how_far(diagnosis: Diagnosis) -> str:
     count = len(gap.held_out_trials)
     held_out = f"{count} trial{'s' if count > 1 else ''}" if count else ""
     words = (
-        "The gap is the root mean square difference between measurement and model over their uncertainty, on trials "
-        f"that the fit had not seen ({held_out}, each left out once)."
+        "The gap is the root mean square difference between measurement and model over their uncertainty, in which "
+        "what is beyond 4 sigma counts less than its square. "
+    )
+    words += (
+        f"It is measured on trials that the fit had not seen ({held_out}, each left out once)."
         if held_out
-        else "The gap is the root mean square difference between measurement and model over their uncertainty. No "
-        "trial could be left out of the fit, so that it is measured on the trials that were fitted."
+        else "No trial could be left out of the fit, so that it is measured on the trials that were fitted."
     )
     shrink = ""
     if diagnosis.verdict != "no_gap" and isfinite(gap.shrink.estimate):

@@ -58,9 +58,12 @@ def overlay_part(diagnosis: Diagnosis) -> str:
     table = data_table(["trial", "outcome", "measured", "nominal", "with the effects"], rows, numbers=(2, 3, 4))
     if not pictures and not table:
         return ""
+    fitted = (
+        "a fit that has not seen the trial" if diagnosis.gap.held_out_trials else "the fit, for none could be left out"
+    )
     words = (
-        "Measured (dots), nominal (dashed) and with the effects (solid), their parameters from a fit that has not "
-        "seen the trial; the sensor's nuisances are fitted in both."
+        f"Measured (dots), nominal (dashed) and with the effects (solid), their parameters from {fitted}; the sensor's "
+        "nuisances are fitted in both."
     )
     return text(words, "soft") + pictures + table
 

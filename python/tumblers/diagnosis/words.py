@@ -320,7 +320,8 @@ def _how_far(diagnosis: Diagnosis) -> str:
         )
     refitted = f"with only the sensor's nuisances refitted: {_sigmas(gap.after_nuisance_only)}"
     if diagnosis.verdict == "no_gap":
-        return f"{held_out}{_sigmas(gap.before)} ({refitted}; noise alone: {_sigmas(gap.noise_floor)})."
+        stated = f"with a perfect sensor and the numbers as stated: {_sigmas(gap.before)}; {refitted}"
+        return f"{held_out}{_sigmas(gap.after)} ({stated}; noise alone: {_sigmas(gap.noise_floor)})."
     shrink = gap.shrink
     if not count:
         held_out = "in the fit itself, for no trial could be left out: "
