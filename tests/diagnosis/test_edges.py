@@ -16,7 +16,7 @@ from tumblers.dataset import Dataset, LabTrial, Outcome, Track
 from tumblers.diagnosis import diagnose
 from tumblers.diagnosis.caution import cautions
 from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.predictive import is_right
+from tumblers.diagnosis.predictive import _worst, is_right
 from tumblers.diagnosis.reading import reached
 from tumblers.diagnosis.simulator import Simulator
 from tumblers.diagnosis.words import summary
@@ -156,6 +156,13 @@ def test_an_outcome_that_contradicts_a_track_or_a_model_at_rest_is_not_hidden_by
     known = data()
     comparison = Comparison(known, Simulator(known, 1))
     assert is_right(comparison, comparison.residual(comparison.nominal_paths)) == right
+
+
+def test_noise_alone_leaves_an_outcome_out_once_in_a_thousand() -> None:
+    # 3.3 sigma.
+    assert float(_worst(np.array(1))) == pytest.approx(10.83, abs=0.01)
+    # A track's limit is that of a form that is a little wrong, not that of noise.
+    assert float(_worst(np.array(400))) == pytest.approx(2.0 * (1.0 + 2.0 * np.sqrt(2.0 / 400.0)))
 
 
 @pytest.mark.parametrize("share", [10.0, -1.0])

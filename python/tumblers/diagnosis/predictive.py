@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import chi2
 
 from .comparison import Comparison, Residual
 from .loss import robust_cost
@@ -18,6 +19,8 @@ __all__ = ["is_right", "mean_square", "mean_squares"]
 
 # A right model's mean square over all numbers, and in its worst trial.
 _EXPLAINED, _WORST = 1.25, 2.0
+# Of few numbers noise alone leaves more than so much once in a thousand trials or outcomes: some hundred are looked at.
+_RARE = 1e-3
 # What a climb that was seen costs a model that stays where it is, next to nothing of the way without slip: the smooth
 # likelihood near the border is for models that nearly climb.
 _AT_REST = reached(0.01, True) ** 2
@@ -41,7 +44,8 @@ def is_right(comparison: Comparison, residual: Residual) -> bool:
 
 def _worst(count: NDArray[np.int_]) -> NDArray[np.float64]:
     """Return the most that a right model leaves of so many numbers: in few, noise alone gives more."""
-    return np.asarray(_WORST * (1.0 + 2.0 * np.sqrt(2.0 / np.maximum(count, 1))))
+    n = np.maximum(count, 1)
+    return np.asarray(np.maximum(_WORST * (1.0 + 2.0 * np.sqrt(2.0 / n)), chi2.isf(_RARE, n) / n))
 
 
 def _outcomes_agree(comparison: Comparison, residual: Residual) -> bool:
