@@ -4,12 +4,14 @@ import json
 import multiprocessing
 from collections import Counter
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 from tumblers import InputError, dataset
+from tumblers.blind import draw
 from tumblers.blind.answer import seal
 from tumblers.blind.commands import blind_app
 from tumblers.blind.layout import draw_lab, world_scenario
@@ -168,3 +170,17 @@ def test_the_command_refuses_in_one_line(made: Path) -> None:
     assert str(done.exception).startswith("--only: found 7, expected numbers of datasets in")
     done = CliRunner().invoke(blind_app, ["score", str(made), "--answers", str(made / "dataset-000" / "seal.json")])
     assert "expected 'tumblers-answers/1'" in str(done.exception)
+
+
+@pytest.mark.parametrize(("shown", "count"), [((1.0, 9.0), None), ((9.0, 1.0), 2), ((9.0, 9.0), 2)])
+def test_a_pair_whose_first_effect_hardly_shows_is_none(
+    shown: tuple[float, float], count: int | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    names = ("viscous_drag", "size_error")
+    by_name = dict(zip(names, shown, strict=True))
+    monkeypatch.setattr(draw, "_size", lambda _world, cause, _target: draw._Sized(cause, 1.0, by_name[cause.name]))
+    rng = np.random.default_rng(0)
+    lab, _ = draw_lab(rng)
+    world = SimpleNamespace(lab=lab, strength=lambda _laws: True)
+    sized = draw._sizes(world, "two", names, (False, False), 9.0, rng)  # type: ignore[arg-type]
+    assert (None if sized is None else len(sized)) == count
