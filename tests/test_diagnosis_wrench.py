@@ -13,6 +13,7 @@ from tumblers.diagnosis.simulator import Job, Simulator
 from tumblers.diagnosis.wrench import missing_wrench, wrench_regions
 from tumblers.diagnosis.wrench_maps import mapped
 from tumblers.diagnosis.wrench_means import Windows
+from tumblers.diagnosis.wrench_pieces import along, at_rest, within_cycles
 from tumblers.model import Model
 from tumblers.presets import ROBOTS, SUBSTRATES, drive
 from tumblers.scenario import Scenario
@@ -22,9 +23,23 @@ from tumblers.surroundings import Surroundings
 PUSH_N = 1e-7
 
 
-def lab(push_N: float, seed: int, frequencies: tuple[float, ...] = (1.0, 10.0, 12.0)) -> Dataset:
+def lab(
+    push_N: float,
+    seed: int,
+    frequencies: tuple[float, ...] = (1.0, 10.0, 12.0),
+    pushed_cycle: tuple[float, float] | None = None,
+) -> Dataset:
     def pushed(scenario: Scenario) -> Scenario:
-        return replace(scenario, surroundings=Surroundings(force_N=(0.0, push_N, 0.0)))
+        push = (0.0, push_N, 0.0)
+        if pushed_cycle is None:
+            return replace(scenario, surroundings=Surroundings(force_N=push))
+        # Each cycle from one share of it to another.
+        first, last = pushed_cycle
+        cycle_s = 1.0 / scenario.field.frequency_Hz
+        times = [(k + share) * cycle_s for k in range(int(2.0 / cycle_s)) for share in (first, last)]
+        rows = [(*push, 0.0, 0.0, 0.0), (0.0,) * 6] * (len(times) // 2)
+        table = Surroundings(wrench_time_s=tuple(times), wrench_N_N_m=tuple(rows))
+        return replace(scenario, surroundings=table)
 
     rng = np.random.default_rng(seed)
     empty = Dataset(
@@ -119,8 +134,38 @@ def test_every_window_has_its_place_however_short_the_way(span_m: float) -> None
         information=np.eye(6 * count),
         prior_sigma=np.ones(6),
     )
-    by_place = mapped(dataset, [window]).by_place
+    by_place = mapped(dataset, [window], [window]).by_place
     assert len(by_place) == (1 if span_m == 0.0 else count)
+
+
+def test_fast_trials_alone_have_their_phases_mapped() -> None:
+    # Along the run a window is longer than a cycle; in the first half of each cycle the robot is pushed on.
+    missing = found(lab(3.0 * PUSH_N, 5, (10.0, 12.0), pushed_cycle=(0.0, 0.5)))
+    cycles = (missing.end_s - missing.start_s) * np.where(np.array(missing.trials) == "f10", 10.0, 12.0)
+    assert np.all(cycles[:-1] > 0.5)
+    assert len(missing.by_phase) == 8
+    truth = 3.0 * PUSH_N * (np.arange(8) < 4)
+    force, sigma = (np.array([entry[k][1] for entry in missing.by_phase.values()]) for k in (0, 1))
+    assert np.all(np.abs(force - truth) < 3.0 * sigma)
+    # Where the robot hops a push shows; in the rest of the cycle friction swallows it.
+    assert sigma.min() < 0.6 * missing.prior_sigma[1]
+    assert sigma.max() > 0.9 * missing.prior_sigma[1]
+
+
+@pytest.mark.parametrize(("end_s", "most"), [(1.0, 4), (0.37, 12), (2.0, 48)])
+def test_pieces_cover_the_run(end_s: float, most: int) -> None:
+    windows, cycle = along(5.0, end_s, most), within_cycles(5.0, end_s)
+    assert windows.count == len(windows.window) <= most
+    assert cycle.count == 4
+    for pieces in (windows, cycle, at_rest(end_s, 3)):
+        assert (pieces.edges[0], pieces.edges[-1]) == (0.0, end_s)
+        assert np.all(np.diff(pieces.edges) > 0.0)
+        rows = np.array(pieces.rows(np.arange(6.0 * pieces.count).reshape(-1, 6)))
+        assert np.array_equal(rows[:-1, 0], 6.0 * pieces.window)
+        assert not rows[-1].any()
+    # The same part of every cycle.
+    phase = (0.5 * (cycle.edges[1:] + cycle.edges[:-1])[:-1] * 5.0) % 1.0
+    assert np.array_equal((4.0 * phase).astype(int), cycle.window[:-1])
 
 
 def test_outcomes_alone_have_no_wrench() -> None:

@@ -1,7 +1,8 @@
 """The missing wrench: the generalized force that the nominal model lacks to follow the data.
 
-A force and a torque w, substrate frame, constant over each of some windows of a trial, are added to the nominal run.
-With the whitened differences r, their derivatives J by w and the sensor's nuisances n (columns N), it minimises
+A force and a torque w, substrate frame, constant over each of some windows of a trial, or the same in a quarter of
+every cycle (`Pieces`), are added to the nominal run. With the whitened differences r, their derivatives J by w and the
+sensor's nuisances n (columns N), it minimises
 
 ```text
 |r + J w + N n|² + Σ (w/s)² + Σ (n/σ_n)²,      s = 0.3 (weight + F_elect) for forces, 0.3 m B for torques
@@ -17,7 +18,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import ceil
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,8 +31,9 @@ from .loss import HUBER, robust_cost
 from .pose import Path
 from .result import MissingWrench
 from .simulator import Edit, Job
-from .wrench_maps import mapped, wrench_regions
+from .wrench_maps import HALF_A_CYCLE, mapped, wrench_regions
 from .wrench_means import Windows
+from .wrench_pieces import Pieces, along, at_rest, within_cycles
 
 __all__ = ["missing_wrench", "wrench_regions"]
 
@@ -98,18 +99,29 @@ def missing_wrench(
     trials = _chosen(comparison, residual, paths, most_windows)
     if not trials:
         return None
-    edges = {i: _edges(comparison, i, most) for i, most in _shared(comparison, trials, most_windows).items()}
-    prior = {i: _prior_sigma(comparison.simulator.nominal(i)) for i in trials}
+    windows = {i: _along(comparison, i, most) for i, most in _shared(comparison, trials, most_windows).items()}
+    found = _estimated(comparison, residual, paths, windows)
+    # Windows longer than half a cycle say nothing of its phase.
+    quick = {i: within for i in trials if (within := _within_cycles(comparison, i, windows[i])) is not None}
+    in_cycle = dict(zip(quick, _estimated(comparison, residual, paths, quick), strict=True))
+    phased = [in_cycle.get(i, mine) for i, mine in zip(windows, found, strict=True)]
+    return mapped(comparison.dataset, found, phased)
+
+
+def _estimated(
+    comparison: Comparison, residual: Residual, paths: Sequence[Path | None], pieces: dict[int, Pieces]
+) -> list[Windows]:
+    """Return the wrench of each trial's windows."""
+    prior = {i: _prior_sigma(comparison.simulator.nominal(i)) for i in pieces}
     states = {}
-    for i in trials:
+    for i, mine in pieces.items():
         path = paths[i]
         assert path is not None
-        states[i] = _State(np.zeros((len(edges[i]) - 1, 6)), residual.trials[i], path)
-    slopes = _slopes(comparison, residual, states, edges, prior)
+        states[i] = _State(np.zeros((mine.count, 6)), residual.trials[i], path)
+    slopes = _slopes(comparison, residual, states, pieces, prior)
     for _ in range(_ITERATIONS):
-        states = _improved(comparison, residual, states, edges, prior, slopes)
-    windows = [_windows(comparison, residual, i, states[i], paths[i], edges[i], prior[i], slopes[i]) for i in trials]
-    return mapped(comparison.dataset, windows)
+        states = _improved(comparison, residual, states, pieces, prior, slopes)
+    return [_windows(comparison, residual, i, states[i], paths[i], pieces[i], prior[i], slopes[i]) for i in pieces]
 
 
 def _chosen(comparison: Comparison, residual: Residual, paths: Sequence[Path | None], most_windows: int) -> list[int]:
@@ -132,20 +144,27 @@ def _shared(comparison: Comparison, trials: Sequence[int], most_windows: int) ->
     return {i: max(2, min(each, int(each * share / steps[i]))) for i in trials}
 
 
-def _edges(comparison: Comparison, trial: int, most: int) -> Floats:
-    """Return the windows' ends, s: quarter cycles, or whole numbers of them where those would be too many."""
-    observed, lab = comparison.readers[trial].observed, comparison.dataset.trials[trial]
+def _end_s(comparison: Comparison, trial: int) -> float:
     # Beyond the last frame nothing says what is missing.
-    end = min(
-        float(observed.time_s[-1]) + observed.frame_interval_s, comparison.simulator.nominal(trial).run.duration_s
-    )
-    most = min(most, _MOST_WINDOWS)
-    if not isinstance(lab.field, RotatingField):
-        return np.linspace(0.0, end, min(most, _WINDOWS_AT_REST) + 1)
-    quarters = 4.0 * lab.field.frequency_Hz * end
-    each = ceil(quarters / most - 1e-9)
-    count = max(1, ceil(quarters / each - 0.25))
-    return np.append(np.arange(count) * each / (4.0 * lab.field.frequency_Hz), end)
+    observed = comparison.readers[trial].observed
+    last = float(observed.time_s[-1]) + observed.frame_interval_s
+    return min(last, comparison.simulator.nominal(trial).run.duration_s)
+
+
+def _along(comparison: Comparison, trial: int, most: int) -> Pieces:
+    field, end, count = comparison.dataset.trials[trial].field, _end_s(comparison, trial), min(most, _MOST_WINDOWS)
+    if not isinstance(field, RotatingField):
+        return at_rest(end, min(count, _WINDOWS_AT_REST))
+    return along(field.frequency_Hz, end, count)
+
+
+def _within_cycles(comparison: Comparison, trial: int, windows: Pieces) -> Pieces | None:
+    """Return the quarters of the cycle where windows along the run are too long to tell them, else None."""
+    field, end = comparison.dataset.trials[trial].field, _end_s(comparison, trial)
+    if not isinstance(field, RotatingField):
+        return None
+    cycles = (windows.edges[1] - windows.edges[0]) * field.frequency_Hz
+    return within_cycles(field.frequency_Hz, end) if cycles > HALF_A_CYCLE and field.frequency_Hz * end >= 1.0 else None
 
 
 def _scales(scenario: Scenario) -> tuple[float, float, float]:
@@ -172,11 +191,9 @@ def _steps(scenario: Scenario) -> Floats:
     return np.array([_STEP_FORCE * force] * 3 + [_STEP_TORQUE * torque] * 3)
 
 
-def _adds(edges: Floats, wrench: Floats) -> Edit:
+def _adds(pieces: Pieces, wrench: Floats) -> Edit:
     def edit(scenario: Scenario) -> Scenario:
-        times = (*(float(t) for t in edges[:-1]), float(edges[-1]))
-        rows = (*(tuple(float(v) for v in row) for row in wrench), (0.0,) * 6)
-        table = Surroundings(wrench_time_s=times, wrench_N_N_m=rows)  # type: ignore[arg-type]
+        table = Surroundings(wrench_time_s=tuple(pieces.edges.tolist()), wrench_N_N_m=tuple(pieces.rows(wrench)))  # type: ignore[arg-type]
         return replace(scenario, surroundings=table)
 
     return edit
@@ -196,7 +213,7 @@ def _slopes(
     comparison: Comparison,
     residual: Residual,
     states: dict[int, _State],
-    edges: dict[int, Floats],
+    pieces: dict[int, Pieces],
     prior: dict[int, Floats],
 ) -> dict[int, Floats]:
     """Return the derivatives of the differences by the wrenches in units of their priors, by trial, shape (n, 6 k).
@@ -210,7 +227,7 @@ def _slopes(
             for sign in (1.0, -1.0):
                 moved = state.wrench.copy().ravel()
                 moved[k] += sign * steps[i][k % 6]
-                jobs.append(Job(i, edit=_adds(edges[i], moved.reshape(-1, 6))))
+                jobs.append(Job(i, edit=_adds(pieces[i], moved.reshape(-1, 6))))
     found = iter(comparison.simulator.run(jobs))
     slopes = {}
     for i, state in states.items():
@@ -249,7 +266,7 @@ def _improved(
     comparison: Comparison,
     residual: Residual,
     states: dict[int, _State],
-    edges: dict[int, Floats],
+    pieces: dict[int, Pieces],
     prior: dict[int, Floats],
     slopes: dict[int, Floats],
 ) -> dict[int, _State]:
@@ -262,7 +279,7 @@ def _improved(
         a, g = _information(state, slopes[i], nuisances, _present(comparison, residual, i))
         step: Floats = -np.linalg.solve(a + np.eye(len(a)), g + here).astype(np.float64)
         tried[i] = [(share, share * step) for share in _SHARES]
-        jobs += [Job(i, edit=_adds(edges[i], _moved(state, change, prior[i]))) for _, change in tried[i]]
+        jobs += [Job(i, edit=_adds(pieces[i], _moved(state, change, prior[i]))) for _, change in tried[i]]
     found = iter(comparison.simulator.run(jobs))
     out = {}
     for i, state in states.items():
@@ -306,7 +323,7 @@ def _windows(
     trial: int,
     state: _State,
     nominal: Path | None,
-    edges: Floats,
+    pieces: Pieces,
     prior: Floats,
     slopes: Floats,
 ) -> Windows:
@@ -315,20 +332,20 @@ def _windows(
     a, _ = _information(state, slopes, nuisances, _present(comparison, residual, trial))
     # A wrench that leaves a gap, or does not do what its derivatives foretell, is known less well than by noise alone.
     spread = max(1.0, float(np.mean(np.minimum(state.values**2, HUBER**2)))) + state.error
-    scale = np.tile(prior, len(edges) - 1)
+    scale = np.tile(prior, pieces.count)
     information = a / spread / np.outer(scale, scale)
-    middle = 0.5 * (edges[1:] + edges[:-1])
-    modes = []
-    for first, last in pairwise(edges):
-        seen = nominal.mode_at(np.linspace(first, last, 20))
-        modes.append(MODES[int(np.bincount(seen, minlength=len(MODES)).argmax())])
+    middle = nominal.at(0.5 * (pieces.edges[1:] + pieces.edges[:-1]))[0][:, 1]
+    seen = np.zeros((pieces.count, len(MODES)))
+    for window, (first, last) in zip(pieces.window, pairwise(pieces.edges), strict=True):
+        seen[window] += np.bincount(nominal.mode_at(np.linspace(first, last, 20)), minlength=len(MODES))
+    start, end = pieces.first
     return Windows(
         trial=trial,
-        start_s=edges[:-1],
-        end_s=edges[1:],
+        start_s=start,
+        end_s=end,
         wrench=state.wrench,
         information=information,
         prior_sigma=prior,
-        mode=tuple(modes),
-        place_y_m=nominal.at(middle)[0][:, 1],
+        mode=tuple(MODES[k] for k in seen.argmax(axis=1)),
+        place_y_m=np.array([float(np.mean(middle[pieces.window == k])) for k in range(pieces.count)]),
     )

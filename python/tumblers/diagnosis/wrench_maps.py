@@ -14,7 +14,10 @@ from .cells import MODES
 from .result import MissingWrench, Region
 from .wrench_means import Windows, means
 
-__all__ = ["mapped", "wrench_regions"]
+__all__ = ["HALF_A_CYCLE", "mapped", "wrench_regions"]
+
+# Cycles of a window that may still tell the phase.
+HALF_A_CYCLE = 0.5 + 1e-9
 
 _PHASES = 8
 _PLACES = 6
@@ -24,7 +27,7 @@ _COMPONENTS = ("x", "y", "z")
 _SIGNIFICANT = 3.0
 
 
-def mapped(dataset: Dataset, windows: Sequence[Windows]) -> MissingWrench:
+def mapped(dataset: Dataset, windows: Sequence[Windows], phased: Sequence[Windows]) -> MissingWrench:
     """Return the missing wrench with its means by phase, contact mode, place and frequency.
 
     Parameters
@@ -32,14 +35,16 @@ def mapped(dataset: Dataset, windows: Sequence[Windows]) -> MissingWrench:
     dataset
         Whose trials they are.
     windows
-        By trial.
+        By trial, along it.
+    phased
+        Of the same trials, those that tell phases and contact modes of the cycle.
     """
     labs = dataset.trials
     phases: dict[str, list[list[int]]] = {}
     width = 360.0 / _PHASES
     for b in range(_PHASES):
         label, centre = f"{b * width:.0f}–{(b + 1) * width:.0f}°", (b + 0.5) * width / 360.0
-        phases[label] = [_at_phase(labs[w.trial].field, w, centre) for w in windows]
+        phases[label] = [_at_phase(labs[w.trial].field, w, centre) for w in phased]
     places = np.concatenate([w.place_y_m for w in windows])
     ends = np.linspace(places.min(), max(places.max(), places.min() + _LEAST_M), _PLACES + 1)
     ends[-1] = inf
@@ -59,7 +64,7 @@ def mapped(dataset: Dataset, windows: Sequence[Windows]) -> MissingWrench:
         ]
         for f in names
     }
-    by_mode = {m: [[k for k, mode in enumerate(w.mode) if mode == m] for w in windows] for m in MODES}
+    by_mode = {m: [[k for k, mode in enumerate(w.mode) if mode == m] for w in phased] for m in MODES}
     return MissingWrench(
         trials=tuple(labs[w.trial].id for w in windows for _ in w.start_s),
         start_s=np.concatenate([w.start_s for w in windows]),
@@ -67,8 +72,8 @@ def mapped(dataset: Dataset, windows: Sequence[Windows]) -> MissingWrench:
         wrench=np.concatenate([w.wrench for w in windows]),
         sigma=np.concatenate([w.sigma for w in windows]),
         prior_sigma=np.max([w.prior_sigma for w in windows], axis=0),
-        by_phase=means(windows, phases),
-        by_mode=means(windows, by_mode),
+        by_phase=means(phased, phases),
+        by_mode=means(phased, by_mode),
         by_place=means(windows, by_place),
         by_frequency=means(windows, by_frequency),
     )
@@ -109,4 +114,4 @@ def _at_phase(field: object, windows: Windows, centre: float) -> list[int]:
         return []
     start, end = windows.start_s * field.frequency_Hz, windows.end_s * field.frequency_Hz
     after = (centre - start) % 1.0
-    return [k for k in range(len(start)) if end[k] - start[k] <= 0.5 + 1e-9 and after[k] < end[k] - start[k]]
+    return [k for k in range(len(start)) if end[k] - start[k] <= HALF_A_CYCLE and after[k] < end[k] - start[k]]
