@@ -18,7 +18,7 @@ from tumblers.diagnosis.loss import FAR, robust_cost
 from tumblers.diagnosis.own_noise import against_itself, against_the_best, beside
 from tumblers.diagnosis.pairs import Pairs, firsts
 from tumblers.diagnosis.search import Search
-from tumblers.diagnosis.simulator import STEPS_S, Job, Simulator
+from tumblers.diagnosis.simulator import LONGEST_STEP_S, Job, Simulator
 from tumblers.diagnosis.step_credit import step_credit
 from tumblers.diagnosis.thresholds import CLEAR, beyond_thresholds
 from tumblers.effects.base import Effect
@@ -86,7 +86,7 @@ def test_the_best_is_always_a_first_and_what_is_far_behind_is_not(log_determinan
 
 def test_an_effect_that_makes_motion_fast_is_simulated_in_a_step_that_resolves_it() -> None:
     simulator = Simulator(plan())
-    assert simulator.step_s[0] == STEPS_S[0]
+    assert simulator.step_s[0] == LONGEST_STEP_S
     soft = simulator.scenario(Job(0, (ContactCompliance(compliance_m_per_N=2.0),)))
     assert soft.run.step_s <= ContactCompliance.longest_step_s * (1.0 + 1e-9)
     # Neutral is the nominal model, bit for bit, so in its step too.
@@ -97,10 +97,10 @@ def test_an_effect_that_makes_motion_fast_is_simulated_in_a_step_that_resolves_i
 def test_steps_are_halved_where_a_hypothesis_asks_for_it() -> None:
     dataset = measure(plan(LYING))
     comparison = Comparison(dataset, Simulator(dataset))
-    assert comparison.simulator.step_s == [STEPS_S[0]], "a body that lies still is the same in any step"
+    assert comparison.simulator.step_s == [LONGEST_STEP_S], "a body that lies still is the same in any step"
     before = comparison.nominal_paths[0]
     assert comparison.halve_steps_for((FrictionCoefficient(factor=0.5),))
-    assert comparison.simulator.step_s[0] < STEPS_S[0], "a body that slides is not"
+    assert comparison.simulator.step_s[0] < LONGEST_STEP_S, "a body that slides is not"
     after = comparison.nominal_paths[0]
     assert before is not None
     assert after is not None
@@ -111,7 +111,7 @@ def _coarse_lab(*truth: Effect) -> Fitter:
     """Return what was measured in a fine step, before a nominal model in a step that nothing asked to be shorter."""
     dataset = measure(plan(PLANS[:3]), truth, divisor=16)
     comparison = Comparison(dataset, Simulator(dataset))
-    comparison.simulator.step_s = [STEPS_S[0]] * len(dataset.trials)
+    comparison.simulator.step_s = [LONGEST_STEP_S] * len(dataset.trials)
     comparison._start()
     return Fitter(comparison)
 
@@ -128,7 +128,7 @@ def test_what_asks_for_a_shorter_step_gets_no_credit_for_it() -> None:
     assert step_credit(fitter, hypothesis.effects(little)) > 100.0
     assert comparison.floors is floors, "what the credit was measured in is not left behind"
     assert of_nominal(fitter).total == nominal.total
-    assert set(comparison.simulator.step_s) == {STEPS_S[0]}
+    assert set(comparison.simulator.step_s) == {LONGEST_STEP_S}
     held = against_itself(fitter, fitter.fit(hypothesis, little, evaluations=1))
     assert nominal.total - (held.cost + held.log_determinant) > 100.0
     assert abs(nominal.total - held.total) < 1.0
@@ -148,7 +148,7 @@ def test_a_shorter_step_is_imposed_only_for_what_leads_without_its_credit(compli
     if compliance_m_per_N:
         assert best.names == ("contact_compliance",)
     else:
-        assert set(simulator.step_s) == {STEPS_S[0]}
+        assert set(simulator.step_s) == {LONGEST_STEP_S}
         # What leads by evidence all the same is held in its steps, and the nominal model with it.
         (leader,) = (c for c in contenders if c.names)
         again = search.in_steps_of(leader, contenders)
@@ -176,7 +176,7 @@ def test_the_leader_is_held_in_a_step_that_is_short_enough_for_it() -> None:
     there = (np.array([0.5]) - hypothesis.neutral) / hypothesis.scale
     leader = of_fit(fitter, fitter.fit(hypothesis, there, evaluations=1))
     found, still = search._concluded(nominal, [leader])
-    assert fitter.comparison.simulator.step_s[0] < STEPS_S[0]
+    assert fitter.comparison.simulator.step_s[0] < LONGEST_STEP_S
     assert found.settled
     assert found.total == pytest.approx(beside(fitter, found, found).total, rel=1e-9)
     assert still.total == pytest.approx(beside(fitter, still, still).total, rel=1e-9)

@@ -9,6 +9,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
+from ..diagnosis.diagnosis import FORMAT
 from ..errors import InputError, show, unreadable
 from .answer import Answer, seal
 from .make import ANSWERS_FORMAT, SEAL, SEAL_FORMAT
@@ -16,8 +17,6 @@ from .repeat import REPEAT_FORMAT
 from .run import DIAGNOSIS, RECORD, RECORD_FORMAT, REPEAT
 
 __all__ = ["Record", "read_records"]
-
-_DIAGNOSIS_FORMAT = "tumblers-diagnosis/1"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -114,7 +113,7 @@ def _record(folder: Path, salt: object, answer: object, answers: Path) -> Record
         truth = Answer.from_table(answer)
     except (AttributeError, KeyError, OverflowError, TypeError, ValueError):
         raise InputError(folder.name, show(answer), "an answer of this version", answers) from None
-    diagnosis = _json(folder / DIAGNOSIS, _DIAGNOSIS_FORMAT) if (folder / DIAGNOSIS).exists() else None
+    diagnosis = _json(folder / DIAGNOSIS, FORMAT) if (folder / DIAGNOSIS).exists() else None
     run = _json(folder / RECORD, RECORD_FORMAT) if (folder / RECORD).exists() else {}
     again = _json(folder / REPEAT, REPEAT_FORMAT) if (folder / REPEAT).exists() else {}
     return Record(

@@ -30,7 +30,6 @@ from .comparison import Comparison
 from .contender import Contender, of_fit, of_nominal
 from .fit import Fitter
 from .hypothesis import PRIOR_SIGMA
-from .loss import robust_cost
 from .predictive import is_right
 from .search import Search
 from .tolerated import is_tolerated
@@ -156,7 +155,6 @@ def _seen(fitter: Fitter, contender: Contender, first: bool) -> Contender:
 def _ranked(
     contenders: Sequence[Contender], comparison: Comparison, effects: Sequence[str], nominal_is_right: bool
 ) -> tuple[list[Contender], float]:
-    noted = [len(floor.outcome_scale) for floor in comparison.floors]
     alike = comparison.alike
     dispersion = alike * max(1.0, min(contender.cost for contender in contenders) / comparison.count)
     listed = max(len(effects), 1)
@@ -168,11 +166,7 @@ def _ranked(
     place = {name: k for k, name in enumerate(effects)}
     scored = []
     for c in contenders:
-        # Outcomes stand for themselves.
-        outcomes = sum(
-            robust_cost(values[len(values) - count :]) for values, count in zip(c.residual.trials, noted, strict=True)
-        )
-        likelihood = -0.5 * (c.total + (alike - 1.0) * outcomes) / dispersion
+        likelihood = -0.5 * (c.total + (alike - 1.0) * comparison.outcome_cost(c.residual)) / dispersion
         evidence = likelihood + prior[len(c.names)]
         evidence -= _PER_PARAMETER * c.free + _PER_PLACE * sum(place[name] for name in c.names)
         if c.fit is not None:

@@ -12,6 +12,7 @@ import numpy as np
 from ..dataset import Dataset, LabTrial
 from ..field import RotatingField, StaticField, field_to_table
 from ..scenario import Scenario
+from .simulator import longest_step_s
 
 __all__ = ["Candidate", "candidates"]
 
@@ -92,9 +93,7 @@ class Candidate:
         scenario
             Of any trial of the same robot.
         """
-        step = scenario.run.fixed_step_s
-        if isinstance(self.field, RotatingField):
-            step = min(step, 0.01 / self.field.frequency_Hz)
+        step = min(scenario.run.fixed_step_s, longest_step_s(self.field))
         run = replace(
             scenario.run,
             duration_s=self.duration_s,

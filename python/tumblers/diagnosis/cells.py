@@ -85,7 +85,6 @@ class Cells:
             first = 0
             lab = comparison.dataset.trials[i]
             field = lab.field
-            turning = isinstance(field, RotatingField)
             tracked = len(comparison.floors[i].valid)
             for place, (name, times) in enumerate(comparison.labels(i)):
                 values = residual.trials[i][first : first + len(times)]
@@ -118,7 +117,7 @@ class Cells:
                 }
                 if isinstance(field, RotatingField | StaticField):
                     block["strength_T"][:] = field.strength_T
-                if turning and isinstance(field, RotatingField):
+                if isinstance(field, RotatingField):
                     block["frequency_Hz"][:] = field.frequency_Hz
                     if not outcome:
                         block["phase_deg"] = (360.0 * field.frequency_Hz * clock) % 360.0

@@ -14,7 +14,7 @@ from .. import _core
 from ..dataset import Dataset
 from ..effects.base import Effect
 from .floor import Floor, Sensitivity, build_floors, choose_steps, measure_sensitivity
-from .loss import weight_of
+from .loss import robust_cost, weight_of
 from .nuisances import NuisanceFit
 from .observed import observe
 from .pose import Path
@@ -196,6 +196,17 @@ class Comparison:
         """
         count = self.floors[trial].tracked
         return weight_of(values[:count], count)
+
+    def outcome_cost(self, residual: Residual) -> float:
+        """Return Σρ of the outcomes alone: they are few and count each for one, neighbouring frames do not.
+
+        Parameters
+        ----------
+        residual
+            Against the noise of any moment.
+        """
+        counts = (len(reader.outcome_kinds) for reader in self.readers)
+        return sum(robust_cost(v[len(v) - count :]) for v, count in zip(residual.trials, counts, strict=True))
 
     def labels(self, trial: int) -> list[tuple[str, Floats]]:
         """Return the channels (and outcomes) of a trial's differences and the times of each, s, in their order.

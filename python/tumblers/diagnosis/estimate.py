@@ -90,8 +90,7 @@ def _around(fitter: Fitter, dispersion: float, fit: Fit) -> dict[tuple[str, str]
     estimates = hypothesis.values(fit.point)
     parameters = [parameter for kind in hypothesis.kinds for parameter in kind.parameters]
     for j, (key, parameter) in enumerate(zip(hypothesis.keys, parameters, strict=True)):
-        # Where a fit moves in other coordinates, it may leave a parameter's range a little.
-        low, high = min(hypothesis.ranges[j][0], estimates[j]), max(hypothesis.ranges[j][1], estimates[j])
+        low, high = hypothesis.ranges[j]
         if parameter.turns:
             low, high = estimates[j] - _HALF_TURN, estimates[j] + _HALF_TURN
         moved = [hypothesis.values(at(side, reach[side]))[j] - estimates[j] for side in sides if side[0] == j]

@@ -40,7 +40,7 @@ from ..field import RotatingField, StaticField, TableField
 from ..scenario import Scenario
 from .pose import Path
 from .reading import Reader
-from .simulator import STEPS_S, Edit, Job, Simulator
+from .simulator import SHORTEST_STEP_S, Edit, Job, Simulator
 
 __all__ = ["SHARED", "TOLERANCES", "Floor", "Sensitivity", "build_floors", "choose_steps", "measure_sensitivity"]
 
@@ -62,7 +62,7 @@ TOLERANCES = {
 SHARED = len(TOLERANCES) + 1
 # The step is halved until this moves the path by less, in noise sigmas.
 _GOOD_ENOUGH = 0.7
-_FINEST_S = STEPS_S[-1] * (1.0 + 1e-9)
+_FINEST_S = SHORTEST_STEP_S * (1.0 + 1e-9)
 # The error of a scheme of first order is twice what halving the step shows.
 _ALPHA = 2.0
 # What of a change is not foretold for a single frame: of the step's, of a tolerance's. With these, not with more, the
@@ -213,7 +213,7 @@ def choose_steps(simulator: Simulator, readers: tuple[Reader, ...], effects: tup
     Parameters
     ----------
     simulator
-        Whose steps are halved, down to the last of `STEPS_S`.
+        Whose steps are halved, as long as they are above `SHORTEST_STEP_S`.
     readers
         Of the dataset's trials.
     effects

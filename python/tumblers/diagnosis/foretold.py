@@ -13,7 +13,7 @@ from ..dataset import Dataset
 from ..field import RotatingField
 from .candidate import Candidate
 from .pose import Path, body_axis, tilt_of
-from .reading import reached
+from .reading import REST_SHARE, reached
 from .simulator import Simulator
 
 __all__ = ["CLIMBS", "EVENTS", "RUNS", "SLIDES", "STAYS", "Foretold", "Said", "foretell"]
@@ -28,8 +28,6 @@ EVENTS = (RUNS, SLIDES, STAYS, CLIMBS)
 _REPEATS, _REST_DEG = 0.01, 1.0
 # Beyond this many times the speed without slip the robot is gone from the camera's view, no matter how fast.
 _GONE = 2.0
-# The robot has come to rest in this last share of a static trial.
-_REST_SHARE = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +115,7 @@ def foretell(
                 events.append((SLIDES if speed * option.incline_deg < 0.0 else RUNS) if gone else up)
                 climbs.append(chance)
             else:
-                rest = np.linspace((1.0 - _REST_SHARE) * time, time, 16)
+                rest = np.linspace((1.0 - REST_SHARE) * time, time, 16)
                 tilts = np.degrees(tilt_of(body_axis(path.at(rest)[1])))
                 values.append([float(np.mean(tilts))])
                 events.append(STAYS)

@@ -17,6 +17,7 @@ from ..effects.base import Effect
 from .candidate import Candidate, candidates
 from .foretold import CLIMBS, RUNS, SLIDES, STAYS, Foretold, Said, foretell
 from .information import information
+from .quantity import enumerated
 from .result import NextTrial
 from .simulator import Job, Simulator
 
@@ -167,11 +168,11 @@ def _why(option: Candidate, foretold: Foretold, labels: list[str], seed: int) ->
     told = [pair for pair in apart if pair[0] == 0 and apart[pair] >= _APART_BITS]
     told = told or [max(apart, key=lambda pair: apart[pair])]
     first = told[0][0]
-    separates = _listed([f"{labels[b]} ({apart[a, b]:.2f} bit)" for a, b in told])
+    separates = enumerated([f"{labels[b]} ({apart[a, b]:.2f} bit)" for a, b in told])
     alike = [labels[b] for b in range(1, len(labels)) if (0, b) not in told]
     whom = "hardly" if first == 0 else f"hardly {labels[0]}"
-    hardly = f", {whom} from {_listed(alike)}" if alike else ""
-    beyond = f" (beyond what was done so far in {_listed(list(option.outside))})" if option.outside else ""
+    hardly = f", {whom} from {enumerated(alike)}" if alike else ""
+    beyond = f" (beyond what was done so far in {enumerated(list(option.outside))})" if option.outside else ""
     says = [f"{labels[k]} {_says(option, foretold.said[k])}" for k in (first, *(b for _, b in told))]
     return f"separates {labels[first]} from {separates}{hardly}{beyond}: {'; '.join(says)}"
 
@@ -201,7 +202,3 @@ def _range(values: Floats, shares: Floats) -> str:
     # Adding zero takes the sign off a zero.
     low, high = (f"{round(float(np.interp(q, below, values[order])), 4) + 0.0:.3g}" for q in (0.05, 0.95))
     return low if low == high else f"{low} to {high}"
-
-
-def _listed(words: list[str]) -> str:
-    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)

@@ -25,8 +25,6 @@ CHANNELS = ("x", "y", "z", "tilt", "heading", "twist")
 _MOST_FRAMES = 160
 # A robot without a field has slid if it went farther than this share of its length.
 _SLID = 0.25
-# A heading is not defined where the long axis stands upright.
-_LEAST_COSINE = 0.2
 
 
 @dataclass(frozen=True, eq=False)

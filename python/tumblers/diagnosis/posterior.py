@@ -25,7 +25,6 @@ from .attribute import Attribution
 from .contender import Contender
 from .fit import Fitter
 from .hypothesis import PRIOR_SIGMA, Hypothesis
-from .loss import robust_cost
 
 __all__ = ["samples"]
 
@@ -140,16 +139,11 @@ def _log_posterior(
     """Return the logarithm of the posterior density at points in the coordinates that have a range; see the module."""
     points = np.tile(middle, (len(found), 1))
     points[:, hypothesis.high > hypothesis.low] = found
-    floors = fitter.comparison.floors
     out = np.empty(len(points))
     for k, residual in enumerate(fitter.residuals(hypothesis, list(points))):
         cost = fitter.cost(residual, points[k])
         prior = float(np.sum((points[k] / PRIOR_SIGMA) ** 2))
-        # Outcomes are few and count each for one, neighbouring frames do not (`attribute`).
-        outcomes = sum(
-            robust_cost(values[len(values) - len(floor.outcome_scale) :])
-            for values, floor in zip(residual.trials, floors, strict=True)
-        )
+        outcomes = fitter.comparison.outcome_cost(residual)
         out[k] = -0.5 * ((cost - outcomes - prior) / attribution.dispersion + outcomes + prior)
     return out
 

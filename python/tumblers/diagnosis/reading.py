@@ -25,7 +25,7 @@ from ..scenario import Scenario
 from .observed import Observed
 from .pose import Path, body_axis, heading_of, relative_turn, tilt_of
 
-__all__ = ["Reader", "reached", "seen_by"]
+__all__ = ["REST_SHARE", "Reader", "reached", "seen_by"]
 
 Floats = NDArray[np.float64]
 
@@ -34,7 +34,7 @@ _SLIDES, _BLUR = 0.3, 0.05
 # A human who writes down the wrong outcome.
 _LAPSE = 0.01
 # The robot has come to rest in this last share of a static trial; that many moments of it are averaged.
-_REST_SHARE, _REST_MOMENTS = 1.0 / 3.0, 50
+REST_SHARE, _REST_MOMENTS = 1.0 / 3.0, 50
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,7 +162,7 @@ class Reader:
         """Return what the model says of each kind of outcome: the share climbed, m/s, degrees."""
         ends, _ = path.at(np.array([0.0, self.duration_s]))
         way = float(ends[1, 1] - ends[0, 1])
-        rest = np.linspace((1.0 - _REST_SHARE) * self.duration_s, self.duration_s, _REST_MOMENTS)
+        rest = np.linspace((1.0 - REST_SHARE) * self.duration_s, self.duration_s, _REST_MOMENTS)
         return {
             "climbed_share": way / self.level_way_m,
             "mean_speed_m_per_s": way / self.duration_s,

@@ -22,13 +22,13 @@ from ..progress import native_call
 from ..scenario import Scenario
 from .pose import Path
 
-__all__ = ["STEPS_S", "Edit", "Job", "Simulator"]
+__all__ = ["LONGEST_STEP_S", "SHORTEST_STEP_S", "Edit", "Job", "Simulator", "longest_step_s"]
 
 # Rows of a path: no farther apart than this, and so many in a cycle of the field.
 _LONGEST_INTERVAL_S = 2e-3
 _ROWS_PER_CYCLE = 60
-# Steps that are tried, the first of them first; a cycle of the field has so many at least.
-STEPS_S = (5.0e-4, 2.5e-4, 1.25e-4)
+# The step that is tried first, where a cycle of the field has so many at least; and what is not halved any more.
+LONGEST_STEP_S, SHORTEST_STEP_S = 5.0e-4, 1.25e-4
 _STEPS_PER_CYCLE = 100
 
 # Time by which runs are made longer for a camera whose clock is late, s.
@@ -84,7 +84,7 @@ class Simulator:
         # The lab that does not say how the torque is taken gets the scheme of second order.
         stated = "magnetic_torque" in dataset.model_given
         self.model: Model = dataset.model if stated else replace(dataset.model, magnetic_torque="midpoint")
-        self.step_s = [_first_step(trial.field) for trial in dataset.trials]
+        self.step_s = [longest_step_s(trial.field) for trial in dataset.trials]
         self._check()
         self._nominal: dict[tuple[int, float], Scenario] = {}
         self._known: OrderedDict[Scenario, tuple[_core._Rollout, int]] = OrderedDict()
@@ -164,7 +164,7 @@ class Simulator:
         scheme = self.model.magnetic_torque if "magnetic_torque" in self.dataset.model_given else RELEASED_TORQUE
         return replace(
             scenario,
-            run=replace(scenario.run, step_s=_first_step(scenario.field)),
+            run=replace(scenario.run, step_s=longest_step_s(scenario.field)),
             model=replace(scenario.model, magnetic_torque=scheme),
         )
 
@@ -176,7 +176,7 @@ class Simulator:
         scenario
             Any of this dataset's.
         """
-        step = min(2.0 * scenario.run.fixed_step_s, _first_step(scenario.field))
+        step = min(2.0 * scenario.run.fixed_step_s, longest_step_s(scenario.field))
         return replace(scenario, run=replace(scenario.run, step_s=step))
 
     def shorten_steps_for(self, effects: Sequence[Effect]) -> bool:
@@ -298,8 +298,9 @@ def _size(rollout: _core._Rollout) -> int:
     return sum(column.nbytes for column in rollout.values() if isinstance(column, np.ndarray))
 
 
-def _first_step(field: object) -> float:
-    longest = STEPS_S[0]
+def longest_step_s(field: object) -> float:
+    """Return the step that is tried first in a field, s."""
+    longest = LONGEST_STEP_S
     if isinstance(field, RotatingField):
         longest = min(longest, 1.0 / (_STEPS_PER_CYCLE * field.frequency_Hz))
     return longest
