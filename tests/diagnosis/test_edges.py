@@ -145,6 +145,15 @@ def _noted(name: str, outcome: Outcome, still: bool = False) -> Dataset:
     return replace(data, trials=tuple(replace(t, outcome=outcome) if t.id == name else t for t in data.trials))
 
 
+def _slid(way_m: float) -> Dataset:
+    """Two tracks that the model follows, and a robot without a field, seen at the start and a way further down."""
+    track = Track(time_s=np.array([0.0, 0.5]), channels={"x_m": np.zeros(2), "y_m": np.array([0.0, -way_m])})
+    off = StaticField(strength_T=0.0, direction=(0.0, 1.0, 0.0))
+    trial = LabTrial(id="slid", field=off, duration_s=0.5, incline_deg=30.0, track=track)
+    data = measure(plan(PLANS[:2]))
+    return replace(data, trials=(*data.trials, trial))
+
+
 @pytest.mark.parametrize(
     ("data", "right"),
     [
@@ -152,6 +161,8 @@ def _noted(name: str, outcome: Outcome, still: bool = False) -> Dataset:
         (lambda: _noted("f05", Outcome(climbs=False)), False),
         (lambda: _noted("f05", Outcome(mean_speed_m_per_s=0.1, sigma_m_per_s=1e-3)), False),
         (lambda: _noted("lies", Outcome(climbs=False), still=True), True),
+        (lambda: _slid(1e-6), True),
+        (lambda: _slid(2e-3), False),
         (lambda: _noted("lies", Outcome(climbs=True), still=True), False),
     ],
 )

@@ -86,7 +86,11 @@ def test_an_origin_and_a_clock_that_are_off_by_more_are_the_camera(
 
 
 def test_where_the_tolerance_is_enough_the_camera_has_no_origin_and_no_clock() -> None:
-    # A heading that is off by much more would be taken for origins along x, which turn with the way.
+    # A heading that is off by much more moves the way's end along x, which origins take a part of.
+    turned = measure(plan(), heading_deg=5.0, seed=1)
+    comparison = Comparison(turned, Simulator(turned, 1))
+    local = comparison.residual(comparison.nominal_paths).local
+    assert comparison.nuisances.enough(local) == {"clock", "origin y"}
     dataset = measure(plan(), heading_deg=3.0, seed=1)
     comparison = Comparison(dataset, Simulator(dataset, 1))
     local = comparison.residual(comparison.nominal_paths).local

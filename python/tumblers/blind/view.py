@@ -7,14 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..dataset.outcome import REST_SHARE
 from .world import Poses, Scene
 
 __all__ = ["STEEPEST_DEG", "channels_of", "climbed_share", "mean_speed", "rest_tilt", "turn_between"]
 
 # The heading of a rod that stands up is not seen.
 STEEPEST_DEG = 75.0
-# The robot has come to rest in the last third of a trial.
-_REST = 2.0 / 3.0
 
 
 def channels_of(poses: Poses) -> dict[str, NDArray[np.float64]]:
@@ -66,4 +65,4 @@ def climbed_share(scene: Scene, way_m: float) -> float:
 def rest_tilt(scene: Scene) -> float:
     """Return the mean tilt of the last third of a trial, degrees."""
     tilt: Sequence[float] = channels_of(scene.poses)["tilt_deg"].tolist()
-    return float(np.mean(tilt[int(_REST * len(tilt)) :]))
+    return float(np.mean(tilt[int((1.0 - REST_SHARE) * len(tilt)) :]))

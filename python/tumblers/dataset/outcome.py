@@ -7,7 +7,10 @@ from dataclasses import dataclass
 from ..check import number
 from ..errors import InputError, show
 
-__all__ = ["Outcome"]
+__all__ = ["REST_SHARE", "Outcome"]
+
+# The robot has come to rest in this last share of a static trial.
+REST_SHARE = 1.0 / 3.0
 
 _SIGMAS = {"mean_speed_m_per_s": "sigma_m_per_s", "tilt_deg": "sigma_deg"}
 

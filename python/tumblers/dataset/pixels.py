@@ -43,7 +43,10 @@ def to_substrate(x_px: Array, y_px: Array, time_s: Array, sensor: Sensor) -> tup
         left = late > _PUNCTUAL * interval and moved > sensor.origin_tolerance_m
         # Times that fall are refused with the whole track.
         if interval >= 0.0 and (late > _LATE * interval or left):
-            expected = f"the pixel of the robot's start: the first that is seen is at {late:g} s, when it has moved"
+            way = f" some {1e6 * moved:.0f} µm" if moved > 0.0 else ""
+            expected = (
+                f"the pixel of the robot's start: the first that is seen is at {late:g} s, when it has moved{way}"
+            )
             raise InputError("sensor.origin_px", "no such key", expected)
         right, down = float(x_px[seen[0]]), float(y_px[seen[0]])
     else:

@@ -83,8 +83,10 @@ class Attribution:
 
     @property
     def doubt(self) -> float:
-        """The nominal model's probability but for its share of `LAPSE`, which is large where hypotheses are few."""
-        return self.nominal.probability - LAPSE / len(self.contenders)
+        """The nominal model's probability but for its shares of `LAPSE`, which are large where hypotheses are few."""
+        # What counts as the nominal model has left it its own share, and has no probability any more.
+        shares = 1 + sum(bool(c.names) and c.probability == 0.0 for c in self.contenders)
+        return self.nominal.probability - shares * LAPSE / len(self.contenders)
 
 
 def attribute(

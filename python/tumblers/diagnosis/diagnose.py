@@ -42,6 +42,8 @@ Floats = NDArray[np.float64]
 _MEASURED, _PROBABLE = 3, 0.02
 # Hypotheses that a next trial is sought for, and draws of each.
 _RIVALS, _SAMPLES = 6, 32
+# What a rival weighs at least in the information of a trial: tied by likelihood alone, it may be next to improbable.
+_LEAST_WEIGHT = 0.02
 # ln of the odds against an effect that is ruled out.
 _RULED_OUT = 4.6
 
@@ -231,8 +233,7 @@ class _Conclusion:
             tell("the next trial", k, len(rivals) + 1)
             hypotheses.append((contender.names, samples(self.fitter, self.attribution, contender, _SAMPLES, self.seed)))
         tell("the next trial", len(rivals), len(rivals) + 1)
-        # What is tied by its likelihood alone may be next to improbable, and is still to be told apart.
-        weights = [max(contender.probability, _PROBABLE) for contender in rivals]
+        weights = [max(contender.probability, _LEAST_WEIGHT) for contender in rivals]
         return next_trials(self.comparison.dataset, self.comparison.simulator, hypotheses, self.seed, weights)
 
     def _ruled_out(self, chosen: Contender, tied: dict[str, tuple[str, ...]]) -> dict[str, str]:

@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..dataset import Dataset
+from ..dataset.outcome import REST_SHARE
 from ..field import RotatingField
 from .candidate import Candidate
 from .pose import Path, body_axis, tilt_of
-from .reading import REST_SHARE, reached
+from .reading import reached
 from .simulator import Simulator
 
 __all__ = ["CLIMBS", "EVENTS", "RUNS", "SLIDES", "STAYS", "Foretold", "Said", "foretell"]

@@ -13,7 +13,7 @@ from scipy.stats import chi2
 
 from .comparison import Comparison, Residual
 from .loss import robust_cost
-from .reading import reached
+from .reading import SLID, reached
 
 __all__ = ["is_right", "mean_square", "mean_squares"]
 
@@ -21,9 +21,9 @@ __all__ = ["is_right", "mean_square", "mean_squares"]
 _EXPLAINED, _WORST = 1.25, 2.0
 # Of few numbers noise alone leaves more than so much once in a thousand trials or outcomes: some hundred are looked at.
 _RARE = 1e-3
-# What a climb that was seen costs a model that stays where it is, next to nothing of the way without slip: the smooth
-# likelihood near the border is for models that nearly climb.
-_AT_REST = reached(0.01, True) ** 2
+# What a climb or a slide that was seen costs a model that stays where it is, within a fiftieth of the way: the smooth
+# likelihood is for models near the border. A climb that was not seen costs as much at 0.18 of the way.
+_HOLDS = {"climbs": reached(0.02, True) ** 2, "slides": reached(0.02, True, SLID) ** 2}
 
 
 def mean_squares(residual: Residual) -> NDArray[np.float64]:
@@ -51,7 +51,7 @@ def _worst(count: NDArray[np.int_]) -> NDArray[np.float64]:
 def _outcomes_agree(comparison: Comparison, residual: Residual) -> bool:
     most = float(_worst(np.array(1)))
     return all(
-        robust_cost(values[floor.tracked + k : floor.tracked + k + 1]) < (_AT_REST if name == "climbs" else most)
+        robust_cost(values[floor.tracked + k : floor.tracked + k + 1]) < _HOLDS.get(name, most)
         for values, floor in zip(residual.trials, comparison.floors, strict=True)
         for k, name in enumerate(floor.outcome_scale)
     )

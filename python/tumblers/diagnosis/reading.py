@@ -21,20 +21,21 @@ from numpy.typing import NDArray
 from .. import _core
 from ..camera import Camera
 from ..dataset.climb import CLIMBED, way_without_slip_m
+from ..dataset.outcome import REST_SHARE
 from ..scenario import Scenario
 from .observed import Observed
 from .pose import Path, body_axis, heading_of, relative_turn, tilt_of
 
-__all__ = ["REST_SHARE", "Reader", "reached", "seen_by"]
+__all__ = ["SLID", "Reader", "reached", "seen_by"]
 
 Floats = NDArray[np.float64]
 
 # Share of the way slid from which a model slides as well, and how blurred this border and that of climbing are.
-_SLIDES, _BLUR = 0.3, 0.05
+SLID, _BLUR = 0.3, 0.05
 # A human who writes down the wrong outcome.
 _LAPSE = 0.01
-# The robot has come to rest in this last share of a static trial; that many moments of it are averaged.
-REST_SHARE, _REST_MOMENTS = 1.0 / 3.0, 50
+# Moments of a rest that are averaged.
+_REST_MOMENTS = 50
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +140,7 @@ class Reader:
         outcome = self.observed.outcome
         terms: dict[str, float] = {}
         by_scale: dict[str, float] = {}
-        slides = {"slides": reached(self._slid_share(path), True, _SLIDES)} if self.observed.slid_m > 0.0 else {}
+        slides = {"slides": reached(self._slid_share(path), True, SLID)} if self.observed.slid_m > 0.0 else {}
         if outcome is None:
             return slides, by_scale
         said = self.read_outcomes(path)

@@ -188,7 +188,8 @@ class MissingWrench:
     prior_sigma
         What is left where the data say nothing, shape (6,).
     by_phase, by_mode, by_place, by_frequency
-        Averages weighted by their uncertainty: label to (wrench, sigma), each of shape (6,).
+        Averages weighted by their uncertainty: label to (wrench, sigma), each of shape (6,). Where the windows of a
+        trial are longer than half a cycle, phases and modes are of a wrench for each quarter of all its cycles instead.
     """
 
     trials: tuple[str, ...]

@@ -8,7 +8,6 @@ ranges are halved, and many points over the whole range are fitted to the beginn
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +26,7 @@ from .own_noise import (
     again,
     against_itself,
     against_the_best,
+    by_itself,
     each_by_itself,
     settled,
 )
@@ -235,7 +235,8 @@ class Search:
             other = likeliest(against_itself(self.fitter, fit) for fit in fits)
             if other.total > best.total - ENOUGH:
                 break
-            best = replace(other, settled=True)
+            # The derivatives where it is, against its own noise.
+            best = by_itself(self.fitter, other, evaluations=1)
         return best
 
     def _refined(self, contenders: Sequence[Contender], count: int) -> list[Contender]:

@@ -263,9 +263,8 @@ class Simulator:
     def _path(self, scenario: Scenario, rollout: _core._Rollout, every: int) -> Path | None:
         if rollout["error"] is not None:
             return None
-        # The last row may be off the even times; a robot that left all bounds has fewer, and its last one may be.
-        even, found = scenario.run.steps // every + 1, len(rollout["time_s"])
-        rows = even if found >= even else found - 1
+        # The last row may be off the even times; a robot that left all bounds has fewer.
+        rows = min(scenario.run.steps // every + 1, len(rollout["time_s"]))
         if rows < 2:
             return None
         position = rollout["position_m"][:rows]

@@ -84,7 +84,7 @@ def missing_wrench(
     paths
         The nominal model's.
     most_windows
-        Bound of the work: windows of all trials together. Trials with a smaller gap than others go without.
+        Bound of the work: windows along all trials together. Trials with a smaller gap than others go without.
 
     Returns
     -------
@@ -102,7 +102,12 @@ def missing_wrench(
     windows = {i: _along(comparison, i, most) for i, most in _shared(comparison, trials, most_windows).items()}
     found = _estimated(comparison, residual, paths, windows)
     # Windows longer than half a cycle say nothing of its phase.
-    quick = {i: within for i in trials if (within := _within_cycles(comparison, i, windows[i])) is not None}
+    quick = {
+        i: within
+        for i in trials
+        if (within := _within_cycles(comparison, i, windows[i])) is not None
+        and 2 * 6 * within.count * comparison.simulator.nominal(i).run.steps <= _MOST_STEPS / len(trials)
+    }
     in_cycle = dict(zip(quick, _estimated(comparison, residual, paths, quick), strict=True))
     phased = [in_cycle.get(i, mine) for i, mine in zip(windows, found, strict=True)]
     return mapped(comparison.dataset, found, phased)
