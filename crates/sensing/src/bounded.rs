@@ -249,8 +249,7 @@ mod tests {
             };
             let here = [part(&step, true), part(&step, false)];
             let no_less = |moved: &Step, counted: bool| part(moved, counted) >= here[usize::from(!counted)] - 4.0 * GAIN;
-            for k in 0..2 {
-                let [low, high] = bounds[k];
+            for (k, [low, high]) in bounds.into_iter().enumerate() {
                 prop_assert!((low - 1e-9..=high + 1e-9).contains(&step.0[k]));
                 for other in [low, high, step.0[k] - 1e-4, step.0[k] + 1e-4] {
                     let mut moved = step.clone();
