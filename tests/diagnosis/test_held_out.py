@@ -104,7 +104,7 @@ def test_what_all_trials_share_is_not_fitted_to_a_trial_that_is_left_out(monkeyp
         return residual(self, paths, train, fit_nuisances, tolerance=tolerance)
 
     monkeypatch.setattr(Comparison, "residual", noted)
-    left_out = held_out(fitter, fitted)
+    left_out = held_out(fitter, fitted.fit)
     assert calls == [((0,), True, None), ((1,), True, None)]
     calls.clear()
     # The gap of the sensor alone is that of the numbers that the lab states.
@@ -129,7 +129,7 @@ def lying_and_still() -> tuple[Fitter, Contender]:
 
 def test_what_the_other_trials_do_not_know_is_neutral_where_one_is_left_out() -> None:
     fitter, fitted = lying_and_still()
-    without_lying, without_still = held_out(fitter, fitted).points
+    without_lying, without_still = held_out(fitter, fitted.fit).points
     assert without_lying is not None
     assert without_still is not None
     # A fit ends near the least of its objective, which is neutral there.
@@ -148,7 +148,7 @@ def test_a_fit_without_a_trial_starts_from_what_the_others_know(monkeypatch: pyt
         return fit(self, hypothesis, start, train, evaluations)
 
     monkeypatch.setattr(Fitter, "fit", noted)
-    held_out(fitter, fitted)
+    held_out(fitter, fitted.fit)
     # First the derivatives are taken, where all trials have put it.
     there = fitted.point[0]
     assert starts[(1,)] == [there, pytest.approx(0.0, abs=1e-6)]

@@ -119,7 +119,7 @@ class _Conclusion:
     def held_out(self, contender: Contender) -> HeldOut:
         """Return what a contender says of trials left out, computed once."""
         if contender.names not in self.measured:
-            self.measured[contender.names] = held_out(self.fitter, contender)
+            self.measured[contender.names] = held_out(self.fitter, contender.fit)
         return self.measured[contender.names]
 
     def diagnosis(self, start: float) -> Diagnosis:

@@ -83,45 +83,31 @@ def folds(fitter: Fitter) -> list[tuple[int, ...]]:
     return [tuple(sorted(order[first::count])) for first in range(count)]
 
 
-def held_out(fitter: Fitter, contender: Contender) -> HeldOut:
+def held_out(fitter: Fitter, fit: Fit | None, tolerance: Floats | None = None) -> HeldOut:
     """Return what a hypothesis says of every trial when that trial is left out of its fit.
 
     Parameters
     ----------
     fitter
         Of the dataset.
-    contender
-        The hypothesis, fitted to all trials.
+    fit
+        Of the hypothesis, to all trials; None for the nominal model.
+    tolerance
+        How far the nominal numbers are off, shape (`SHARED`,); fitted to the others if None.
     """
     residuals: dict[int, Residual] = {}
     points: dict[int, Floats | None] = {}
     for left_out in folds(fitter) or [()]:
         train = tuple(i for i in fitter.trials if i not in left_out)
         point = None
-        if contender.fit is not None:
-            hypothesis = contender.fit.hypothesis
-            point = _refitted(fitter, contender.fit, train) if left_out else contender.fit.point
-            paths = fitter.comparison.simulator.run([Job(i, hypothesis.effects(point)) for i in fitter.trials])
+        if fit is not None:
+            point = _refitted(fitter, fit, train) if left_out else fit.point
+            paths = fitter.comparison.simulator.run([Job(i, fit.hypothesis.effects(point)) for i in fitter.trials])
         else:
             paths = list(fitter.comparison.nominal_paths)
-        residual = fitter.comparison.residual(paths, train)
+        residual = fitter.comparison.residual(paths, train, tolerance=tolerance)
         for i in left_out or fitter.trials:
             residuals[i], points[i] = residual, point
-    return _of_all(fitter, residuals, points)
-
-
-def _sensor_alone(fitter: Fitter) -> HeldOut:
-    """Return what the nominal model with the numbers that the lab states says of every trial that is left out."""
-    comparison = fitter.comparison
-    residuals: dict[int, Residual] = {}
-    for left_out in folds(fitter) or [()]:
-        train = tuple(i for i in fitter.trials if i not in left_out)
-        residual = comparison.residual(comparison.nominal_paths, train, tolerance=np.zeros(SHARED))
-        residuals |= dict.fromkeys(left_out or fitter.trials, residual)
-    return _of_all(fitter, residuals, dict.fromkeys(fitter.trials))
-
-
-def _of_all(fitter: Fitter, residuals: dict[int, Residual], points: dict[int, Floats | None]) -> HeldOut:
     # A trial without numbers is no worse anywhere.
     anywhere = next(iter(residuals))
     return HeldOut(
@@ -197,7 +183,9 @@ def shrink(fitter: Fitter, chosen: HeldOut, seed: int = 0) -> Gap:
     comparison = fitter.comparison
     perfect = comparison.residual(comparison.nominal_paths, fit_nuisances=False)
     counted = list(fitter.trials)
-    costs = np.array([[robust_cost(perfect.trials[i]) for i in counted], _sensor_alone(fitter).costs(), chosen.costs()])
+    # The sensor alone, with the nominal numbers as the lab states them.
+    sensor = held_out(fitter, None, np.zeros(SHARED))
+    costs = np.array([[robust_cost(perfect.trials[i]) for i in counted], sensor.costs(), chosen.costs()])
     sizes = np.array([comparison.sizes[i] for i in counted], dtype=np.float64)
     before, nuisances, after = np.sqrt(costs.sum(axis=1) / max(sizes.sum(), 1.0))
     draws = np.random.default_rng(seed).integers(0, len(counted), (_RESAMPLES, len(counted)))
