@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.stats import chi2
 
 from .comparison import Comparison, Residual
-from .loss import robust_cost
+from .loss import huber, robust_cost
 from .reading import SLID, reached
 
 __all__ = ["is_right", "mean_square", "mean_squares"]
@@ -51,7 +51,7 @@ def _worst(count: NDArray[np.int_]) -> NDArray[np.float64]:
 def _outcomes_agree(comparison: Comparison, residual: Residual) -> bool:
     most = float(_worst(np.array(1)))
     return all(
-        robust_cost(values[floor.tracked + k : floor.tracked + k + 1]) < _HOLDS.get(name, most)
+        loss < _HOLDS.get(name, most)
         for values, floor in zip(residual.trials, comparison.floors, strict=True)
-        for k, name in enumerate(floor.outcome_scale)
+        for name, loss in zip(floor.outcome_scale, huber(values[floor.tracked :]), strict=True)
     )
