@@ -10,10 +10,9 @@ from numpy.typing import NDArray
 
 from ..camera import Camera
 from ..dataset import LabTrial, Outcome, Track
-from ..dataset.climb import CLIMBED
 from .lab import Lab, Plan
 from .strength import SIGMA_DEG, speed_sigma
-from .view import channels_of, climbed_share, mean_speed, rest_tilt
+from .view import channels_of, climbs, mean_speed, rest_tilt
 from .world import Poses, Scene
 
 __all__ = ["Nuisances", "measure"]
@@ -129,5 +128,5 @@ def _outcome(lab: Lab, plan: Plan, scene: Scene, rng: np.random.Generator) -> Ou
         tilt = rest_tilt(scene) + SIGMA_DEG * float(rng.normal())
         return Outcome(tilt_deg=round(min(max(tilt, -90.0), 90.0), 2), sigma_deg=SIGMA_DEG)
     if plan.outcome == "climbs":
-        return Outcome(climbs=climbed_share(scene, lab.way_m(plan)) >= CLIMBED)
+        return Outcome(climbs=climbs(scene, lab.way_m(plan)))
     return None

@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
-from ..dataset.climb import CLIMBED
 from .lab import Lab, Plan
-from .view import channels_of, climbed_share, mean_speed, rest_tilt, turn_between
+from .view import channels_of, climbs, mean_speed, rest_tilt, turn_between
 from .world import Scene
 
 __all__ = ["SIGMA_DEG", "Strength", "speed_sigma", "strength"]
@@ -130,6 +129,6 @@ def _rows(lab: Lab, plan: Plan, scene: Scene, other: Scene) -> tuple[NDArray[np.
     if plan.outcome == "tilt":
         add(np.array([rest_tilt(scene) - rest_tilt(other)]), SIGMA_DEG, {})
     if plan.outcome == "climbs":
-        does, did = (climbed_share(one, lab.way_m(plan)) >= CLIMBED for one in (scene, other))
-        add(np.array([float(does) - float(did)]), 1.0 / _CLIMB_SIGMA, {})
+        way = lab.way_m(plan)
+        add(np.array([float(climbs(scene, way)) - float(climbs(other, way))]), 1.0 / _CLIMB_SIGMA, {})
     return np.concatenate(matrices), np.concatenate(sides)

@@ -7,10 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..dataset.climb import CLIMBED
 from ..dataset.outcome import REST_SHARE
 from .world import Poses, Scene
 
-__all__ = ["STEEPEST_DEG", "channels_of", "climbed_share", "mean_speed", "rest_tilt", "turn_between"]
+__all__ = ["STEEPEST_DEG", "channels_of", "climbed_share", "climbs", "mean_speed", "rest_tilt", "turn_between"]
 
 # The heading of a rod that stands up is not seen.
 STEEPEST_DEG = 75.0
@@ -57,9 +58,14 @@ def mean_speed(scene: Scene, duration_s: float) -> float:
 
 
 def climbed_share(scene: Scene, way_m: float) -> float:
-    """Return how far the robot got along +y, as a share of a way."""
+    """Return how far the robot got along +y, as a share of the way without slip."""
     y = scene.poses.position_m[:, 1]
     return float(y[-1] - y[0]) / way_m
+
+
+def climbs(scene: Scene, way_m: float) -> bool:
+    """Return whether a lab notes that the robot climbs, by the rule of its format."""
+    return climbed_share(scene, way_m) >= CLIMBED
 
 
 def rest_tilt(scene: Scene) -> float:
