@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from math import isfinite
 
-from ..effects.catalogue import CATALOGUE
 from .diagnosis import Diagnosis
 from .phrase import meaning_of, title_of
-from .plausible import neutral_values, plausible_ranges
+from .plausible import neutral_values, plausible_ranges, turning_keys
 from .quantity import percent
 
 __all__ = ["cautions"]
@@ -40,7 +39,7 @@ def _of_effects(diagnosis: Diagnosis) -> list[str]:
                 f"{title_of(effect.name)} has a probability of {percent(effect.probability)} only: see the ranking."
             )
         ranges, neutral = plausible_ranges(diagnosis, effect.name), neutral_values(effect.name)
-        turning = {p.key for p in CATALOGUE[effect.name].parameters if p.turns} if effect.name in CATALOGUE else set()
+        turning = turning_keys(effect.name)
         for key, interval in effect.parameters.items():
             # An angle that turns on has no end.
             if key in turning:

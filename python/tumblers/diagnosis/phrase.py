@@ -283,7 +283,7 @@ def _camera(found: _Found) -> Phrase:
     said += [words.format(found.text(key)) for key, words in more.items() if found.off(key)]
     return Phrase(
         "the camera is off, a gap of the measurement and not of the model",
-        f"{', '.join(said[:-1])} and {said[-1]}",
+        enumerated(said),
         plural=True,
     )
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ..effects.catalogue import CATALOGUE
 from .diagnosis import Diagnosis
 
-__all__ = ["neutral_values", "plausible_ranges"]
+__all__ = ["neutral_values", "plausible_ranges", "turning_keys"]
 
 
 def plausible_ranges(diagnosis: Diagnosis, name: str) -> dict[str, tuple[float, float]]:
@@ -34,3 +34,8 @@ def plausible_ranges(diagnosis: Diagnosis, name: str) -> dict[str, tuple[float, 
 def neutral_values(name: str) -> dict[str, float]:
     """Return the value of each parameter of an effect that changes nothing, by its key."""
     return {p.key: p.neutral for p in CATALOGUE[name].parameters} if name in CATALOGUE else {}
+
+
+def turning_keys(name: str) -> set[str]:
+    """Return the keys of an effect's angles that turn on: their ranges have no ends."""
+    return {p.key for p in CATALOGUE[name].parameters if p.turns} if name in CATALOGUE else set()
