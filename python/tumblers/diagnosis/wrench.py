@@ -31,9 +31,9 @@ from .loss import HUBER, robust_cost
 from .pose import Path
 from .result import MissingWrench
 from .simulator import Edit, Job
-from .wrench_maps import HALF_A_CYCLE, mapped, wrench_regions
+from .wrench_maps import mapped, wrench_regions
 from .wrench_means import Windows
-from .wrench_pieces import Pieces, along, at_rest, within_cycles
+from .wrench_pieces import HALF_A_CYCLE, Pieces, along, at_rest, within_cycles
 
 __all__ = ["missing_wrench", "wrench_regions"]
 
@@ -101,13 +101,8 @@ def missing_wrench(
         return None
     windows = {i: _along(comparison, i, most) for i, most in _shared(comparison, trials, most_windows).items()}
     found = _estimated(comparison, residual, paths, windows)
-    # Windows longer than half a cycle say nothing of its phase.
-    quick = {
-        i: within
-        for i in trials
-        if (within := _within_cycles(comparison, i, windows[i])) is not None
-        and 2 * 6 * within.count * comparison.simulator.nominal(i).run.steps <= _MOST_STEPS / len(trials)
-    }
+    most_steps = _MOST_STEPS / len(trials)
+    quick = {i: within for i in trials if (within := _within_cycles(comparison, i, windows[i], most_steps)) is not None}
     in_cycle = dict(zip(quick, _estimated(comparison, residual, paths, quick), strict=True))
     phased = [in_cycle.get(i, mine) for i, mine in zip(windows, found, strict=True)]
     return mapped(comparison.dataset, found, phased)
@@ -163,13 +158,18 @@ def _along(comparison: Comparison, trial: int, most: int) -> Pieces:
     return along(field.frequency_Hz, end, count)
 
 
-def _within_cycles(comparison: Comparison, trial: int, windows: Pieces) -> Pieces | None:
-    """Return the quarters of the cycle where windows along the run are too long to tell them, else None."""
+def _within_cycles(comparison: Comparison, trial: int, windows: Pieces, most_steps: float) -> Pieces | None:
+    """Return the quarters of the cycle where windows along the run do not tell them, else None.
+
+    None as well of a run of less than a cycle, and of one that has too many steps.
+    """
     field, end = comparison.dataset.trials[trial].field, _end_s(comparison, trial)
-    if not isinstance(field, RotatingField):
+    if not isinstance(field, RotatingField) or field.frequency_Hz * end < 1.0:
         return None
-    cycles = (windows.edges[1] - windows.edges[0]) * field.frequency_Hz
-    return within_cycles(field.frequency_Hz, end) if cycles > HALF_A_CYCLE and field.frequency_Hz * end >= 1.0 else None
+    found = within_cycles(field.frequency_Hz, end)
+    told = (windows.edges[1] - windows.edges[0]) * field.frequency_Hz <= HALF_A_CYCLE
+    steps = 2 * 6 * found.count * comparison.simulator.nominal(trial).run.steps
+    return None if told or steps > most_steps else found
 
 
 def _scales(scenario: Scenario) -> tuple[float, float, float]:

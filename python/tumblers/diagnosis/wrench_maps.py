@@ -13,11 +13,9 @@ from ..field import RotatingField
 from .cells import MODES
 from .result import MissingWrench, Region
 from .wrench_means import Windows, means
+from .wrench_pieces import HALF_A_CYCLE
 
-__all__ = ["HALF_A_CYCLE", "mapped", "wrench_regions"]
-
-# Cycles of a window that may still tell the phase.
-HALF_A_CYCLE = 0.5 + 1e-9
+__all__ = ["mapped", "wrench_regions"]
 
 _PHASES = 8
 _PLACES = 6

@@ -12,10 +12,12 @@ from math import ceil
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Pieces", "along", "at_rest", "within_cycles"]
+__all__ = ["HALF_A_CYCLE", "Pieces", "along", "at_rest", "within_cycles"]
 
 Floats = NDArray[np.float64]
 
+# Cycles of a window that may still tell the phase.
+HALF_A_CYCLE = 0.5 + 1e-9
 _QUARTERS = 4
 
 
@@ -92,6 +94,6 @@ def within_cycles(frequency_Hz: float, end_s: float) -> Pieces:
     frequency_Hz, end_s
         Of the field, Hz, and the run's end, s.
     """
-    count = max(_QUARTERS, ceil(_QUARTERS * frequency_Hz * end_s - 1e-9))
+    count = ceil(_QUARTERS * frequency_Hz * end_s - 1e-9)
     edges = np.append(np.arange(count) / (_QUARTERS * frequency_Hz), end_s)
     return Pieces(edges, np.arange(count) % _QUARTERS)
