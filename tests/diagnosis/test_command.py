@@ -17,9 +17,11 @@ from tumblers.commands import run
 from tumblers.dataset import Dataset, Track
 from tumblers.diagnosis.diagnosis import FILES, Diagnosis
 from tumblers.diagnosis.words import summary
+from tumblers.effects import catalogue
 from tumblers.effects.catalogue import CATALOGUE
 
 from .example import lab, small
+from .test_edges import WEAK_AMPLIFIER
 
 
 def unseen() -> Dataset:
@@ -124,38 +126,16 @@ def test_the_command_writes_the_files_and_prints_the_summary(
 def test_the_whole_catalogue_can_be_tried_beside_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     lab().save(tmp_path / "data")
     own = tmp_path / "own.py"
-    own.write_text(
-        """
-from dataclasses import dataclass
-from typing import ClassVar
-
-from tumblers.effects import Effect, Parameter
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Hum(Effect):
-    \"\"\"The coils hum.\"\"\"
-
-    name: ClassVar[str] = "hum"
-    source: ClassVar[str] = "nobody"
-    parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter(key="share", neutral=0.0, low=0.0, high=1.0, unit="1", meaning="loudness"),
-    )
-
-    share: float = 0.0
-
-    def act(self, scenario):
-        return scenario
-"""
-    )
+    own.write_text(WEAK_AMPLIFIER, encoding="utf-8")
+    monkeypatch.setattr(catalogue, "_LOADED", {})
     listed = list(CATALOGUE)
     computation = Computation(monkeypatch, small())
     try:
         arguments = ("--out", tmp_path / "out", "--effects", f"catalogue,{own}", "--effects", "catalogue")
         assert command(monkeypatch, tmp_path / "data", *arguments) == 0
     finally:
-        CATALOGUE.pop("hum", None)
-    assert computation.asked["effects"] == [*listed, "hum"]
+        del CATALOGUE["weak_amplifier"]
+    assert computation.asked["effects"] == [*listed, "weak_amplifier"]
 
 
 @pytest.mark.parametrize(("error", "status"), [(KeyboardInterrupt(), 130), (OSError(28, "No space left"), 1)])

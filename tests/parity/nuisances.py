@@ -123,7 +123,7 @@ class PlainFit:
         low, high = (np.where(free, bound - shared, 0.0) for bound in nuisances.shared_bounds)
         prior = np.diag(1.0 / nuisances.shared_sigmas)
         together = [i for i in tables if i in train]
-        change, moved = np.zeros(count), np.zeros_like(local)
+        moved = np.zeros_like(local)
         # By columns: what is shared and free, then three of each trial.
         matrix = [np.hstack([prior, np.zeros((count, 3 * len(together)))])]
         side = [-shared / nuisances.shared_sigmas]
