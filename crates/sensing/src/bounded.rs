@@ -39,7 +39,10 @@ impl Limited {
         let range = self.high - self.low;
         match self.held {
             // To first order, what the objective gains across the range of a change that is held at the wrong end.
-            Some(end) => (range > 0.0 && range * if end > self.low { slope } else { -slope } > GAIN).then_some(None),
+            Some(end) => {
+                let gain = range * if end > self.low { slope } else { -slope };
+                (range > 0.0 && gain > GAIN).then_some(None)
+            }
             None => {
                 let slack = 1e-12 * range;
                 let inside = (self.low - slack..=self.high + slack).contains(&change);
