@@ -48,9 +48,8 @@ SECOND = 10.0
 # search found. Shared by all, and of the order of what datasets with a known truth showed while this was developed.
 LAPSE = 0.12
 # By how much less probable the nominal model is once it has failed the predictive test, and something else is likelier
-# by that: where one trial alone is far off, neighbouring frames that count as one say too little of it. A choice: all
-# 26 sealed datasets without a cause that were called so by their verdict had passed the test, which bounds it by a few
-# per cent only.
+# by that: where one trial alone is far off, neighbouring frames that count as one say too little of it. A choice:
+# how often a right model fails the test is known to a few per cent only.
 REFUSED = 0.02
 # Trial points of the last fit of the best, from where it is: intervals are no better than it.
 _LAST_POINTS = 12
