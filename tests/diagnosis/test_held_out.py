@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tumblers.diagnosis.comparison import Comparison, Residual
 from tumblers.diagnosis.contender import Contender, of_fit
-from tumblers.diagnosis.fit import Fit, Fitter
+from tumblers.diagnosis.fit import Fitter
 from tumblers.diagnosis.floor import SHARED
 from tumblers.diagnosis.held_out import HeldOut, folds, held_out, is_foretold, shrink
 from tumblers.diagnosis.hypothesis import Hypothesis
@@ -141,13 +141,20 @@ def test_a_fit_without_a_trial_starts_from_what_the_others_know(monkeypatch: pyt
     # From the point that all trials chose, least squares may not leave it, though the others do not speak for it.
     fitter, fitted = lying_and_still()
     starts: dict[tuple[int, ...], list[float]] = {}
-    fit = Fitter.fit
 
-    def noted(self: Fitter, hypothesis: Hypothesis, start: Floats, train: tuple[int, ...], evaluations: int) -> Fit:
-        starts.setdefault(train, []).append(float(start[0]))
-        return fit(self, hypothesis, start, train, evaluations)
+    def noted(name: str) -> Callable[..., object]:
+        way = getattr(Fitter, name)
 
-    monkeypatch.setattr(Fitter, "fit", noted)
+        def call(
+            self: Fitter, hypothesis: Hypothesis, start: Floats, train: tuple[int, ...], *rest: int, **more: object
+        ) -> object:
+            starts.setdefault(train, []).append(float(start[0]))
+            return way(self, hypothesis, start, train, *rest, **more)
+
+        return call
+
+    for name in ("fit", "descend"):
+        monkeypatch.setattr(Fitter, name, noted(name))
     held_out(fitter, fitted.fit)
     # First the derivatives are taken, where all trials have put it.
     there = fitted.point[0]

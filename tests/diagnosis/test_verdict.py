@@ -14,7 +14,7 @@ from tumblers.diagnosis.contender import Contender, of_fit, of_nominal
 from tumblers.diagnosis.fit import Fitter
 from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.simulator import Simulator
-from tumblers.diagnosis.verdict import judge, ties
+from tumblers.diagnosis.verdict import judge, refused, ties
 from tumblers.effects import get
 
 from .lab import PLANS, measure, plan
@@ -63,6 +63,37 @@ def test_where_nothing_is_likelier_than_the_nominal_model_it_is_right_or_nothing
     attribution = Attribution((nominal, other), 1.0, nominal_is_right)
     found, chosen = judge(SimpleNamespace(sizes=(COUNT,)), attribution, True)  # type: ignore[arg-type]
     assert (found, chosen) == (verdict, nominal)
+
+
+@pytest.mark.parametrize(
+    ("evidence", "left", "standing", "first"),
+    [
+        # What stands where evidence ranks it first stays there.
+        ((0.0, -1.0, -2.0), (1.0, 1.0, 1.0), {"viscous_drag", "field_rolloff"}, "viscous_drag"),
+        # The first that stands of those that are tied leads.
+        ((0.0, -1.0, -2.0), (1.0, 1.0, 1.0), {"field_rolloff", "size_error"}, "field_rolloff"),
+        # Not where it leaves a gap in the trials that it was fitted to.
+        ((0.0, -1.0, -2.0), (1.0, 1.7, 1.0), {"field_rolloff", "size_error"}, "size_error"),
+        # Evidence of twenty to one is not overruled, nor is anything where none stands.
+        ((0.0, -4.0, -5.0), (1.0, 1.0, 1.0), {"field_rolloff"}, "viscous_drag"),
+        ((0.0, -1.0, -2.0), (1.0, 1.0, 1.0), set(), "viscous_drag"),
+    ],
+)
+def test_between_what_evidence_ties_trials_left_out_decide(
+    evidence: tuple[float, ...], left: tuple[float, ...], standing: set[str], first: str
+) -> None:
+    names = ("viscous_drag", "field_rolloff", "size_error")
+    each = zip(names, left, np.exp(evidence) / np.exp(evidence).sum(), evidence, strict=True)
+    made = [replace(contender(name, sigmas, float(p)), log_evidence=e) for name, sigmas, p, e in each]
+    attribution = Attribution((*made, replace(contender("", 2.0, 0.0), log_evidence=-90.0)), 1.0, False)
+    floors = (SimpleNamespace(tracked=COUNT, outcome_scale={}),)
+    comparison = SimpleNamespace(sizes=(COUNT,), floors=floors)
+    found = attribution.refusing(refused(comparison, made, lambda c: c.names[0] in standing))  # type: ignore[arg-type]
+    assert found.contenders[0].names == (first,)
+    assert sum(c.probability for c in found.contenders) == pytest.approx(1.0)
+    assert found.contenders[0].probability == max(c.probability for c in found.contenders)
+    if first == names[0]:
+        assert found.contenders == attribution.contenders
 
 
 @pytest.mark.parametrize(

@@ -43,7 +43,11 @@ pub fn sweep(
 ) -> Result<Vec<Outcome<Metrics>>, rayon::ThreadPoolBuildError> {
     each(trials, threads, control, |trial, _| {
         let mut gauge = Gauge::new(trial);
-        match run(trial, control, |stepper| gauge.read(stepper, trial.step())) {
+        let read = |stepper: &Stepper| {
+            gauge.read(stepper, trial.step());
+            Ok(())
+        };
+        match run(trial, control, read) {
             Ok(()) => Ok(gauge.metrics()),
             Err(Ended::Diverged(diverged)) => Err(Outcome::Failed(diverged.to_string())),
             Err(Ended::Stopped) => Err(Outcome::Stopped),
@@ -66,13 +70,17 @@ pub fn rollouts(
         let mut done = 0;
         let ended = run(trial, control, |stepper| {
             done += 1;
+            rollout.unconverged_steps += u64::from(!stepper.solution().converged);
+            if !stepper.is_resolved() {
+                return Err(Ended::Diverged(Diverged { time: stepper.time() }));
+            }
             if done % every == 0 || done == trial.steps() {
                 rollout.push(trial, stepper);
             }
-            rollout.unconverged_steps += u64::from(!stepper.solution().converged);
+            Ok(())
         });
         match ended {
-            // A robot that has gone out of all bounds has been seen until then.
+            // A robot that has gone out of all bounds, or spins faster than its steps show, has been seen until then.
             Err(Ended::Diverged(_)) | Ok(()) => Ok(rollout),
             Err(Ended::Stopped) => Err(Outcome::Stopped),
         }
@@ -102,8 +110,8 @@ fn each<T: Send>(
     Ok(pool.install(|| trials.par_iter().enumerate().with_max_len(1).map(guarded).collect()))
 }
 
-/// Runs `trial` to its end, and shows `watch` every step.
-fn run(trial: &Trial, control: &Control, mut watch: impl FnMut(&Stepper)) -> Result<(), Ended> {
+/// Runs `trial` to its end or to that of `watch`, which sees every step.
+fn run(trial: &Trial, control: &Control, mut watch: impl FnMut(&Stepper) -> Result<(), Ended>) -> Result<(), Ended> {
     let mut stepper = Stepper::new(trial, SolverKind::Reduced);
     for done in 0..trial.steps() {
         if done % STEPS_BETWEEN_LOOKS == 0 && control.stop.load(Ordering::Relaxed) {
@@ -113,7 +121,7 @@ fn run(trial: &Trial, control: &Control, mut watch: impl FnMut(&Stepper)) -> Res
         if !stepper.is_finite() {
             return Err(Ended::Diverged(Diverged { time: stepper.time() }));
         }
-        watch(&stepper);
+        watch(&stepper)?;
     }
     Ok(())
 }

@@ -95,6 +95,11 @@ impl<'a> Stepper<'a> {
         vectors.iter().all(|v| v.iter().all(|x| x.is_finite())) && orientation.coords.iter().all(|x| x.is_finite())
     }
 
+    /// Whether the last step turned the body by so little that it shows which way.
+    pub fn is_resolved(&self) -> bool {
+        self.trial.step() * self.solution.angular.norm() <= MOST_TURN
+    }
+
     /// The time that has passed, s.
     pub fn time(&self) -> f64 {
         self.done as f64 * self.trial.step()
@@ -121,7 +126,7 @@ impl<'a> Stepper<'a> {
             }
         }
         let h = self.trial.step();
-        self.solution.converged &= h * self.solution.angular.norm() <= MOST_TURN;
+        self.solution.converged &= self.is_resolved();
         self.state.linear = self.solution.linear;
         self.state.angular = self.solution.angular;
         self.state.position += self.solution.linear * h;

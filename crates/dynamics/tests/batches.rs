@@ -104,6 +104,21 @@ fn a_diverging_trial_leaves_what_was_finite() {
 }
 
 #[test]
+fn a_rollout_ends_where_a_step_does_not_show_the_spin() {
+    let mut parts = cuboid_on_paper(0.01, 5.0);
+    // From the second half on a moment that soon turns it by more than a right angle in a step.
+    parts.surroundings.times = std::sync::Arc::new([0.05]);
+    parts.surroundings.wrenches = std::sync::Arc::new([(Vec3::zeros(), Vec3::new(0.0, 0.0, 1e-3))]);
+    let trial = Trial::new(parts).unwrap();
+    let rollout = walked(rollouts(&[trial.clone()], &[1], 1, &Control::default()).unwrap()).remove(0);
+    let rows = rollout.time.len();
+    assert!((100..200).contains(&rows), "{rows} rows");
+    let (recording, _) = record(&trial, SolverKind::Reduced, 1, |_| ControlFlow::Continue(())).unwrap();
+    assert!(recording.time.len() > rows);
+    assert_eq!(pose_bits(&rollout.position, &[]), pose_bits(&recording.position[..rows], &[]));
+}
+
+#[test]
 fn stopped_rollouts_say_so() {
     let (trials, every) = walks();
     let control = Control::default();

@@ -17,7 +17,7 @@ the probability belongs to all hypotheses alike.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from math import log
 
@@ -87,6 +87,28 @@ class Attribution:
         shares = 1 + sum(bool(c.names) and c.probability == 0.0 for c in self.contenders)
         return self.nominal.probability - shares * LAPSE / len(self.contenders)
 
+    def refusing(self, refused: Collection[tuple[str, ...]]) -> Attribution:
+        """Return the attribution with some contenders as improbable as `REFUSED` makes them.
+
+        Parameters
+        ----------
+        refused
+            Their names.
+        """
+        if not refused:
+            return self
+        share = LAPSE / len(self.contenders)
+        weighed = []
+        for c in self.contenders:
+            if c.names in refused:
+                left = share + REFUSED * max(c.probability - share, 0.0)
+                c = replace(c, log_evidence=c.log_evidence + log(REFUSED), probability=left)
+            weighed.append(c)
+        total = sum(c.probability for c in weighed)
+        made = [replace(c, probability=c.probability / total) for c in weighed]
+        made.sort(key=lambda c: -c.log_evidence)
+        return replace(self, contenders=tuple(made))
+
 
 def attribute(
     comparison: Comparison, kinds: Sequence[type[Effect]], on_phase: OnPhase | None = None, seed: int = 0
@@ -142,7 +164,10 @@ def _seen(fitter: Fitter, contender: Contender, first: bool) -> Contender:
     if contender.fit is None:
         now = of_nominal(fitter)
     elif first:
-        now = of_fit(fitter, fitter.fit(contender.fit.hypothesis, contender.point, evaluations=_LAST_POINTS))
+        last = fitter.fit(
+            contender.fit.hypothesis, contender.point, evaluations=_LAST_POINTS, steps=contender.fit.steps
+        )
+        now = of_fit(fitter, last)
     else:
         now = of_fit(fitter, fitter.again(contender.fit))
     return replace(

@@ -11,6 +11,7 @@ from scipy.stats import qmc
 from .contender import Contender, of_fit
 from .fit import Fitter
 from .hypothesis import Hypothesis
+from .least import least
 
 __all__ = ["MANY", "from_beginnings", "promise"]
 
@@ -46,11 +47,11 @@ def from_beginnings(fitter: Fitter, contender: Contender, possible: Sequence[Hyp
     assert contender.fit is not None
     fitter.take_likeliest_noise(contender.effects)
     hypothesis = contender.fit.hypothesis
-    point = (
-        _followed(fitter, contender, possible, tracked)
-        if contender.free > MANY
-        else _staged(fitter, hypothesis, _sampled(fitter, contender, seed, tracked)[1], tracked)
-    )
+    if contender.free > MANY:
+        point = _followed(fitter, contender, possible, tracked)
+    else:
+        sampled = [point for _, point in _sampled(fitter, contender, seed, tracked, _BEST)]
+        point = _staged(fitter, hypothesis, sampled, tracked)
     fit = fitter.fit(hypothesis, point, evaluations=_LAST_POINTS)
     return of_fit(fitter, min(fitter.again(contender.fit), fit, key=lambda fit: fit.cost))
 
@@ -75,15 +76,17 @@ def promise(fitter: Fitter, contender: Contender, seed: int) -> float:
     assert contender.fit is not None
     hypothesis = contender.fit.hypothesis
     here = fitter.residuals(hypothesis, [contender.point], tracked, _STAGES[0])[0]
-    return fitter.cost(here, contender.point, tracked) - _sampled(fitter, contender, seed, tracked)[0]
+    return fitter.cost(here, contender.point, tracked) - _sampled(fitter, contender, seed, tracked, 1)[0][0]
 
 
 def _tracked(fitter: Fitter) -> tuple[int, ...]:
     return tuple(i for i in fitter.trials if len(fitter.comparison.readers[i].observed.time_s))
 
 
-def _sampled(fitter: Fitter, contender: Contender, seed: int, tracked: tuple[int, ...]) -> tuple[float, list[Floats]]:
-    """Return the least objective over the beginnings of many points, and the best of them."""
+def _sampled(
+    fitter: Fitter, contender: Contender, seed: int, tracked: tuple[int, ...], count: int
+) -> list[tuple[float, Floats]]:
+    """Return the best of many points with their objective over the beginnings, the best first."""
     assert contender.fit is not None
     hypothesis = contender.fit.hypothesis
     low, high = hypothesis.low, hypothesis.high
@@ -96,17 +99,14 @@ def _sampled(fitter: Fitter, contender: Contender, seed: int, tracked: tuple[int
     # Of two effects one may be right as it is.
     centre = contender.point if len(contender.names) > 1 else np.zeros(len(low))
     tried: list[Floats] = [*even, *np.clip(centre + np.where(ways > 0.0, ways * high, -ways * low), low, high)]
-    residuals = fitter.residuals(hypothesis, tried, tracked, _STAGES[0])
-    costs = [fitter.cost(residual, point, tracked) for residual, point in zip(residuals, tried, strict=True)]
-    order = np.argsort(costs, kind="stable")
-    return costs[order[0]], [tried[k] for k in order[:_BEST]]
+    return least(fitter, hypothesis, tried, count, tracked, _STAGES[0])
 
 
 def _staged(fitter: Fitter, hypothesis: Hypothesis, points: Sequence[Floats], tracked: tuple[int, ...]) -> Floats:
     """Return where fits to more and more of the trials' time lead from some points."""
     for stage in _STAGES:
-        fits = [fitter.fit(hypothesis, point, tracked, _STAGE_POINTS, stage) for point in points]
-        points = [min(fits, key=lambda fit: fit.cost).point]
+        ends = [fitter.descend(hypothesis, point, tracked, _STAGE_POINTS, stage) for point in points]
+        points = [min(ends, key=lambda end: end[0])[1]]
     return points[0]
 
 
@@ -116,8 +116,8 @@ def _followed(fitter: Fitter, contender: Contender, possible: Sequence[Hypothesi
     hypothesis = contender.fit.hypothesis
     points = _starts_within(contender, possible)
     for stage, count in _FOLLOWED:
-        fits = [fitter.fit(hypothesis, point, tracked, _STAGE_POINTS, stage) for point in points[:count]]
-        points = [fit.point for fit in sorted(fits, key=lambda fit: fit.cost)]
+        ends = [fitter.descend(hypothesis, point, tracked, _STAGE_POINTS, stage) for point in points[:count]]
+        points = [point for _, point in sorted(ends, key=lambda end: end[0])]
     return points[0]
 
 

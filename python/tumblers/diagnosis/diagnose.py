@@ -31,7 +31,7 @@ from .overlay import overlays
 from .posterior import samples
 from .result import EffectEstimate, HeatMap, Interval, NextTrial, RankedHypothesis, Region, TrialFloor
 from .simulator import Job, Simulator
-from .verdict import judge, ties
+from .verdict import judge, refused, ties
 from .wrench import missing_wrench, wrench_regions
 
 __all__ = ["diagnose"]
@@ -41,7 +41,7 @@ Floats = NDArray[np.float64]
 # Hypotheses whose gap is measured on trials left out, and how probable they must be (the best is always measured).
 _MEASURED, _PROBABLE = 3, 0.02
 # Hypotheses that a next trial is sought for, and draws of each.
-_RIVALS, _SAMPLES = 6, 32
+_RIVALS, _SAMPLES = 6, 24
 # What a rival weighs at least in the information of a trial: tied by likelihood alone, it may be next to improbable.
 _LEAST_WEIGHT = 0.02
 # ln of the odds against an effect that is ruled out.
@@ -122,20 +122,27 @@ class _Conclusion:
             self.measured[contender.names] = held_out(self.fitter, contender.fit)
         return self.measured[contender.names]
 
+    def stands(self, contender: Contender) -> bool:
+        """Return whether a contender stands on trials that its fit had not seen."""
+        gap = shrink(self.fitter, self.held_out(contender), self.seed)
+        nominal = self.held_out(self.attribution.nominal)
+        return is_foretold(self.fitter, nominal, self.held_out(contender), gap, contender)
+
     def diagnosis(self, start: float) -> Diagnosis:
-        comparison, attribution, tell = self.comparison, self.attribution, self.tell
+        comparison, tell = self.comparison, self.tell
         dataset = comparison.dataset
-        nominal = self.held_out(attribution.nominal)
+        nominal = self.held_out(self.attribution.nominal)
         considered = [
-            c for k, c in enumerate(attribution.contenders[:_MEASURED]) if k == 0 or c.probability > _PROBABLE
+            c for k, c in enumerate(self.attribution.contenders[:_MEASURED]) if k == 0 or c.probability > _PROBABLE
         ]
         for k, contender in enumerate(considered):
             tell("trials left out", k, len(considered))
             self.held_out(contender)
+        behind = refused(comparison, considered, self.stands)
+        attribution = self.attribution = self.attribution.refusing(behind)
         best = attribution.contenders[0]
         gap = shrink(self.fitter, self.held_out(best), self.seed)
-        foretold = is_foretold(self.fitter, nominal, self.held_out(best), gap, best)
-        verdict, chosen = judge(comparison, attribution, foretold)
+        verdict, chosen = judge(comparison, attribution, self.stands(best))
         if chosen is not best:
             gap = shrink(self.fitter, nominal, self.seed)
         tied = ties(comparison, attribution, chosen)
@@ -234,7 +241,11 @@ class _Conclusion:
             hypotheses.append((contender.names, samples(self.fitter, self.attribution, contender, _SAMPLES, self.seed)))
         tell("the next trial", len(rivals), len(rivals) + 1)
         weights = [max(contender.probability, _LEAST_WEIGHT) for contender in rivals]
-        return next_trials(self.comparison.dataset, self.comparison.simulator, hypotheses, self.seed, weights)
+        # A trial that nobody has measured needs no shorter steps than the longest.
+        dataset = self.comparison.dataset
+        return next_trials(
+            dataset, Simulator(dataset, self.comparison.simulator.threads), hypotheses, self.seed, weights
+        )
 
     def _ruled_out(self, chosen: Contender, tied: dict[str, tuple[str, ...]]) -> dict[str, str]:
         """For each improbable single effect the trial that speaks most against it."""

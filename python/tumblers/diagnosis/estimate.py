@@ -57,7 +57,7 @@ def intervals(fitter: Fitter, attribution: Attribution, contender: Contender) ->
     comparison = fitter.comparison
     before = comparison.floors
     comparison.take_noise_of(contender.effects)
-    fit = fitter.fit(contender.fit.hypothesis, contender.fit.point, evaluations=1)
+    fit = fitter.fit(contender.fit.hypothesis, contender.fit.point, evaluations=1, steps=contender.fit.steps)
     found = _around(fitter, attribution.dispersion, fit)
     comparison.floors = before
     return found

@@ -43,7 +43,7 @@ _MIXED = 3
 # How often the trials' weights are taken anew, and the change of one that asks for it.
 _WEIGHINGS, _REWEIGHED = 2, 1.3
 # A derivative's step changes the differences by about this much (root mean square), within these bounds.
-_CHANGE, _LEAST_STEP, _MOST_STEP = 0.3, 1e-3, 5e-2
+_CHANGE, _LEAST_STEP, _MOST_STEP, _FIRST_STEP = 0.3, 1e-3, 5e-2, 1e-2
 # Derivatives of a step that is off by more than this factor are taken again.
 _RESTEPPED = 3.0
 # A guess that is nearer to a start than this, as a share of the way, is no other start.
@@ -68,6 +68,8 @@ class Fit:
         The objective there.
     jacobian
         Derivatives of the fitted differences and the nuisances' terms by u, shape (n, p), Huber's weights in them.
+    steps
+        Of u, by which these were taken, shape (p,): with the same the same paths serve against another noise.
     """
 
     hypothesis: Hypothesis
@@ -75,6 +77,7 @@ class Fit:
     residual: Residual
     cost: float
     jacobian: Floats
+    steps: Floats
 
     def information(self, dispersion: float) -> Floats:
         """Return the inverse of `covariance`, shape (p, p)."""
@@ -222,8 +225,16 @@ class Fitter:
         take(best)
         return tuple(_SHARES[k] for k in best)
 
-    def _weights(self, residual: Residual, chosen: Sequence[int]) -> Floats:
-        """Square roots of the weights of the trials' numbers, 1 for outcomes, shape (n,)."""
+    def weights(self, residual: Residual, chosen: Sequence[int]) -> Floats:
+        """Return the square roots of the weights of the trials' numbers, 1 for outcomes, shape (n,).
+
+        Parameters
+        ----------
+        residual
+            How wrong a hypothesis is.
+        chosen
+            The trials.
+        """
         rows = []
         for i in chosen:
             row = np.ones(len(residual.trials[i]))
@@ -253,7 +264,7 @@ class Fitter:
         starts = [[np.clip(b + s, h.low, h.high) for s in h.starts] for h, b in zip(hypotheses, base, strict=True)]
         # One hypothesis after another: long tracks of all at once would fill the memory.
         found = [self.residuals(h, points) for h, points in zip(hypotheses, starts, strict=True)]
-        weights = self._weights(still, self.trials)
+        weights = self.weights(still, self.trials)
         here = weights * still.over(self.trials)
         first = np.empty((len(here), 0)) if slopes is None else slopes[: len(here)]
         tried: list[list[tuple[float, int, Floats]]] = []
@@ -293,6 +304,7 @@ class Fitter:
         train: Sequence[int] | None = None,
         evaluations: int = 8,
         share: float = 1.0,
+        steps: Floats | None = None,
     ) -> Fit:
         """Return the best point near a start.
 
@@ -308,50 +320,99 @@ class Fitter:
             At most so many trial points.
         share
             Of each trial's time that counts.
+        steps
+            Of the first derivatives, shape (p,): those of an earlier fit.
         """
         chosen = self.trials if train is None else tuple(train)
-        steps = np.full(len(start), 1e-2)
-        known: dict[bytes, Residual] = {}
-        moved: dict[bytes, _Moved] = {}
+        descent = _Descent(self, hypothesis, start, chosen, share, steps)
+        return descent.fit(descent.end(evaluations))
 
-        def at(point: Floats) -> Residual:
-            key = point.tobytes()
-            if key not in known:
-                known[key] = self.residuals(hypothesis, [point], chosen, share)[0]
-            return known[key]
+    def descend(
+        self,
+        hypothesis: Hypothesis,
+        start: Floats,
+        train: Sequence[int] | None = None,
+        evaluations: int = 8,
+        share: float = 1.0,
+    ) -> tuple[float, Floats]:
+        """Return the objective and the point where `fit` would end, without the derivatives there.
 
+        Parameters
+        ----------
+        hypothesis, start, train, evaluations, share
+            As in `fit`.
+        """
+        chosen = self.trials if train is None else tuple(train)
+        descent = _Descent(self, hypothesis, start, chosen, share)
+        point = descent.end(evaluations)
+        return descent.cost(point), point
+
+
+class _Descent:
+    """Least squares from one start, which meets some points several times."""
+
+    def __init__(
+        self,
+        fitter: Fitter,
+        hypothesis: Hypothesis,
+        start: Floats,
+        chosen: tuple[int, ...],
+        share: float,
+        steps: Floats | None = None,
+    ) -> None:
+        self.fitter, self.hypothesis, self.chosen, self.share = fitter, hypothesis, chosen, share
+        self.steps = np.full(len(start), _FIRST_STEP) if steps is None else steps.copy()
+        self._known: dict[bytes, Residual] = {}
+        self._moved: dict[bytes, _Moved] = {}
         inside = np.clip(start, hypothesis.low, hypothesis.high)
         fixed = hypothesis.high <= hypothesis.low
         low, high = np.where(fixed, -1e-9, hypothesis.low), np.where(fixed, 1e-9, hypothesis.high)
         margin = 1e-9 * (high - low)
-        point = np.clip(inside, low + margin, high - margin)
-        weights = self._weights(at(point), chosen)
+        self.bounds = low, high
+        self.start = np.clip(inside, low + margin, high - margin)
+        self.weights = fitter.weights(self.at(self.start), chosen)
 
-        def rows(residual: Residual, point: Floats) -> Floats:
-            return np.concatenate([weights * residual.over(chosen), residual.prior, point / PRIOR_SIGMA])
+    def at(self, point: Floats) -> Residual:
+        """Return how wrong the hypothesis is at a point."""
+        key = point.tobytes()
+        if key not in self._known:
+            self._known[key] = self.fitter.residuals(self.hypothesis, [point], self.chosen, self.share)[0]
+        return self._known[key]
 
-        def jacobian(point: Floats) -> Floats:
-            here = rows(at(point), point)
-            key = point.tobytes()
-            # The same point is asked for again with other weights, and at the end.
-            if key not in moved or np.any(np.abs(np.log(steps / moved[key].steps)) > np.log(_RESTEPPED)):
-                # Towards the inside of the range.
-                signed = np.where(point + steps > hypothesis.high, -steps, steps)
-                points = [point + signed[j] * np.eye(len(point))[j] for j in range(len(point))]
-                found = self.residuals(hypothesis, points, chosen, share)
-                moved[key] = _Moved(steps.copy(), signed, points, found)
-            by = moved[key]
-            columns = [(rows(r, p) - here) / h for r, p, h in zip(by.residuals, by.points, by.signed, strict=True)]
-            slope = np.array([np.sqrt(np.mean(column[: -len(point)] ** 2)) for column in columns])
-            steps[:] = np.clip(_CHANGE / np.maximum(slope, 1e-12), _LEAST_STEP, _MOST_STEP)
-            return np.column_stack(columns)
+    def cost(self, point: Floats) -> float:
+        """Return the objective at a point."""
+        return self.fitter.cost(self.at(point), point, self.chosen)
 
+    def rows(self, residual: Residual, point: Floats) -> Floats:
+        """Return what least squares sees, by the trials' weights of the moment."""
+        differences = self.weights * residual.over(self.chosen)
+        return np.concatenate([differences, residual.prior, point / PRIOR_SIGMA])
+
+    def jacobian(self, point: Floats) -> Floats:
+        """Return the derivatives of `rows` at a point, shape (n, p)."""
+        here, key, steps = self.rows(self.at(point), point), point.tobytes(), self.steps
+        # The same point is asked for again with other weights, and at the end.
+        if key not in self._moved or np.any(np.abs(np.log(steps / self._moved[key].steps)) > np.log(_RESTEPPED)):
+            # Towards the inside of the range.
+            signed = np.where(point + steps > self.hypothesis.high, -steps, steps)
+            points = [point + signed[j] * np.eye(len(point))[j] for j in range(len(point))]
+            found = self.fitter.residuals(self.hypothesis, points, self.chosen, self.share)
+            self._moved[key] = _Moved(steps, signed, points, found)
+        by = self._moved[key]
+        columns = [(self.rows(r, p) - here) / h for r, p, h in zip(by.residuals, by.points, by.signed, strict=True)]
+        slope = np.array([np.sqrt(np.mean(column[: -len(point)] ** 2)) for column in columns])
+        self.steps = np.clip(_CHANGE / np.maximum(slope, 1e-12), _LEAST_STEP, _MOST_STEP)
+        return np.column_stack(columns)
+
+    def end(self, evaluations: int) -> Floats:
+        """Return where least squares end, in so many trial points at most."""
+        point = self.start
         for weighing in range(_WEIGHINGS):
             result = least_squares(
-                lambda point: rows(at(point), point),
+                lambda point: self.rows(self.at(point), point),
                 point,
-                jac=jacobian,
-                bounds=(low, high),
+                jac=self.jacobian,
+                bounds=self.bounds,
                 loss="huber",
                 f_scale=HUBER,
                 max_nfev=evaluations if weighing == 0 else max(evaluations // 2, 2),
@@ -359,14 +420,19 @@ class Fitter:
                 xtol=1e-4,
                 gtol=1e-3,
             )
-            if self.cost(at(result.x), result.x, chosen) <= self.cost(at(point), point, chosen):
+            if self.cost(result.x) <= self.cost(point):
                 point = result.x
-            before, weights = weights, self._weights(at(point), chosen)
-            change = np.max(np.abs(np.log(weights / before)), initial=0.0)
+            before, self.weights = self.weights, self.fitter.weights(self.at(point), self.chosen)
+            change = np.max(np.abs(np.log(self.weights / before)), initial=0.0)
             if change < np.log(_REWEIGHED):
                 break
-        residual = at(point)
-        fitted = np.concatenate([weights * residual.over(chosen), residual.prior])
+        return point
+
+    def fit(self, point: Floats) -> Fit:
+        """Return the fit that ends at a point, with the derivatives there."""
+        residual = self.at(point)
+        fitted = np.concatenate([self.weights * residual.over(self.chosen), residual.prior])
         robust = np.minimum(1.0, HUBER / np.maximum(np.abs(fitted), 1e-12)) ** 0.5
-        slopes = jacobian(point)[: len(fitted)] * robust[:, None]
-        return Fit(hypothesis, point, residual, self.cost(residual, point, chosen), slopes)
+        slopes = self.jacobian(point)[: len(fitted)] * robust[:, None]
+        steps = self._moved[point.tobytes()].steps
+        return Fit(self.hypothesis, point, residual, self.cost(point), slopes, steps)

@@ -129,13 +129,13 @@ def _refitted(fitter: Fitter, fit: Fit, train: tuple[int, ...]) -> Floats:
     not is neutral. Only where the point of all trials follows these much better does the fit start there: a search of
     these would have found it, too.
     """
-    there = fitter.fit(fit.hypothesis, fit.point, train, evaluations=1)
+    there = fitter.fit(fit.hypothesis, fit.point, train, evaluations=1, steps=fit.steps)
     information = there.jacobian.T @ there.jacobian
     start = np.linalg.solve(information + np.eye(len(fit.point)) / PRIOR_SIGMA**2, information @ fit.point)
-    refitted = fitter.fit(fit.hypothesis, np.asarray(start, dtype=np.float64), train, _EVALUATIONS)
-    if there.cost < refitted.cost - CLEAR:
-        refitted = fitter.fit(fit.hypothesis, fit.point, train, _EVALUATIONS)
-    return refitted.point
+    cost, point = fitter.descend(fit.hypothesis, np.asarray(start, dtype=np.float64), train, _EVALUATIONS)
+    if there.cost < cost - CLEAR:
+        _, point = fitter.descend(fit.hypothesis, fit.point, train, _EVALUATIONS)
+    return point
 
 
 def is_foretold(fitter: Fitter, nominal: HeldOut, chosen: HeldOut, gap: Gap, best: Contender) -> bool:

@@ -12,9 +12,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 from math import inf
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ..progress import OnPhase
 from .contender import Contender, likeliest_first, of_fit, of_nominal
 from .fit import Fit, Fitter
+from .hypothesis import Hypothesis
 from .thresholds import CLEAR
 
 __all__ = [
@@ -28,7 +32,10 @@ __all__ = [
     "by_itself",
     "each_by_itself",
     "settled",
+    "settled_at",
 ]
+
+Floats = NDArray[np.float64]
 
 # Trial points of a fit that has only to follow another noise, and of a good one that is taken further.
 IDLE_POINTS, POLISH_POINTS = 2, 6
@@ -121,7 +128,7 @@ def _settled(fitter: Fitter, contender: Contender) -> Contender:
     best = against_itself(fitter, contender.fit)
     for _ in range(_ROUNDS):
         assert best.fit is not None
-        fit = fitter.fit(best.fit.hypothesis, best.point, evaluations=POLISH_POINTS)
+        fit = fitter.fit(best.fit.hypothesis, best.point, evaluations=POLISH_POINTS, steps=best.fit.steps)
         other = against_itself(fitter, fit) if fit.cost < best.cost - ENOUGH else best
         if other.total >= best.total:
             break
@@ -171,9 +178,27 @@ def by_itself(fitter: Fitter, contender: Contender, evaluations: int) -> Contend
         Trial points of the fit at most; of one, only the derivatives are taken.
     """
     assert contender.fit is not None
-    fitter.take_likeliest_noise(contender.effects)
-    fit = fitter.fit(contender.fit.hypothesis, contender.point, evaluations=evaluations)
-    return replace(of_fit(fitter, fit), settled=True)
+    return settled_at(fitter, contender.fit.hypothesis, contender.point, evaluations, contender.fit.steps)
+
+
+def settled_at(
+    fitter: Fitter, hypothesis: Hypothesis, point: Floats, evaluations: int = 1, steps: Floats | None = None
+) -> Contender:
+    """Hold a hypothesis at a point against its own noise there and fit it on, its derivatives where it ends.
+
+    Parameters
+    ----------
+    fitter
+        Of the dataset.
+    hypothesis, point
+        Some effects at work.
+    evaluations
+        Trial points of the fit at most; of one, only the derivatives are taken.
+    steps
+        Of the first derivatives.
+    """
+    fitter.take_likeliest_noise(hypothesis.effects(point))
+    return replace(of_fit(fitter, fitter.fit(hypothesis, point, evaluations=evaluations, steps=steps)), settled=True)
 
 
 def against_the_best(fitter: Fitter, nominal: Contender, contenders: Sequence[Contender]) -> list[Contender]:

@@ -7,7 +7,7 @@ ranges are halved, and many points over the whole range are fitted to the beginn
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,17 +18,17 @@ from .beginnings import MANY, from_beginnings, promise
 from .contender import Contender, likeliest, likeliest_first, of_fit, of_nominal
 from .fit import Fitter
 from .hypothesis import Hypothesis
+from .least import least
 from .nearby import points_around
 from .own_noise import (
     ENOUGH,
     IDLE_POINTS,
     POLISH_POINTS,
     again,
-    against_itself,
     against_the_best,
-    by_itself,
     each_by_itself,
     settled,
+    settled_at,
 )
 from .pairs import Pairs, firsts, single_of
 from .predictive import is_right, mean_square
@@ -51,6 +51,9 @@ _WANTING = 1.1
 # Hypotheses that are fitted again from the beginnings of the trials; and of those whose points over the range follow
 # the beginnings better than their fit does.
 _REFINED, _PROMISING = 2, 4
+# What is found farther away is a new first of pairs where it takes more than this share of what it leaves off the
+# objective.
+_FARTHER = 0.1
 # Effects to which a second is added, the farther ones only where the best leaves a gap.
 _FIRSTS = 2
 # Fits that are looked around, how many of the points around one are fitted on in so many trial points, and how often.
@@ -105,12 +108,19 @@ class Search:
         if not strong and singles[0].total > nominal.total - self.worth:
             return self._concluded(nominal, singles)
         singles = self._all_shaken(singles)
+        refined = {contender.names for contender in singles[:_REFINED]}
         if strong and self._is_wanting(singles[0]):
-            singles = settled(self.fitter, self._far(singles), self.tell)
-        if singles[0].total > nominal.total - self.worth:
-            return self._concluded(nominal, singles)
-        pairs = self._pairs(singles, strong)
-        if pairs:
+            singles = settled(self.fitter, self._refined(singles, _REFINED), self.tell)
+        pairs: list[Contender] = []
+        if singles[0].total <= nominal.total - self.worth:
+            pairs = self._pairs(singles, strong)
+        if strong and self._is_wanting(likeliest([*singles, *pairs])):
+            far = settled(self.fitter, self._far(singles, refined), self.tell)
+            gain = singles[0].total - far[0].total
+            singles = far
+            if gain > max(CLEAR, _FARTHER * far[0].cost):
+                pairs = self._pairs(singles, strong, pairs)
+        if pairs and singles[0].total <= nominal.total - self.worth:
             pairs = likeliest_first([self._shaken(pairs[0]), *pairs[1:]])
             singles = [self._nested(pairs[0], singles[0]), *singles[1:]]
         return self._concluded(nominal, likeliest_first([*singles, *pairs]))
@@ -148,20 +158,18 @@ class Search:
             made = settled(self.fitter, again(self.fitter, made), self.tell, _OWN, _MOST_OWN)
         return nominal, made
 
-    def _far(self, singles: Sequence[Contender]) -> list[Contender]:
-        """Search far away for the best, and where they leave a gap for those that no local fit can be trusted with."""
-        made = self._refined(singles, _REFINED)
-        refined = {contender.names for contender in singles[:_REFINED]}
-        if self._is_wanting(made[0]):
-            self.tell("points over the whole range", _REFINED, _REFINED)
-            self.fitter.take_likeliest_noise(made[0].effects)
-            few = [k for k, c in enumerate(made) if c.free <= MANY and c.names not in refined]
-            promises = {k: promise(self.fitter, made[k], self.seed) for k in few}
-            promising = sorted(few, key=lambda k: -promises[k])[:_PROMISING]
-            for k, contender in enumerate(made):
-                many = contender.free > MANY and contender.names != singles[0].names
-                if many or (k in promising and promises[k] > CLEAR):
-                    made[k] = from_beginnings(self.fitter, contender, self.possible, self.seed)
+    def _far(self, singles: Sequence[Contender], refined: Collection[tuple[str, ...]]) -> list[Contender]:
+        """Search far away for those that no local fit can be trusted with, but for those that were refined."""
+        made = list(singles)
+        self.tell("points over the whole range", _REFINED, _REFINED)
+        self.fitter.take_likeliest_noise(made[0].effects)
+        few = [k for k, c in enumerate(made) if c.free <= MANY and c.names not in refined]
+        promises = {k: promise(self.fitter, made[k], self.seed) for k in few}
+        promising = sorted(few, key=lambda k: -promises[k])[:_PROMISING]
+        for k, contender in enumerate(made):
+            many = contender.free > MANY and contender.names != singles[0].names
+            if many or (k in promising and promises[k] > CLEAR):
+                made[k] = from_beginnings(self.fitter, contender, self.possible, self.seed)
         return likeliest_first(made)
 
     def _nested(self, pair: Contender, single: Contender) -> Contender:
@@ -228,15 +236,15 @@ class Search:
             hypothesis = best.fit.hypothesis
             self.fitter.take_likeliest_noise(best.effects)
             points = points_around(best.fit, self.comparison.alike, rng)
-            residuals = self.fitter.residuals(hypothesis, points)
-            costs = [self.fitter.cost(residual, point) for residual, point in zip(residuals, points, strict=True)]
-            starts = [points[n] for n in np.argsort(costs, kind="stable")[:_SHAKEN_FITS]]
-            fits = [self.fitter.fit(hypothesis, start, evaluations=_SHAKEN_POINTS) for start in starts]
-            other = likeliest(against_itself(self.fitter, fit) for fit in fits)
+            starts = [point for _, point in least(self.fitter, hypothesis, points, _SHAKEN_FITS)]
+            ends = [self.fitter.descend(hypothesis, start, evaluations=_SHAKEN_POINTS) for start in starts]
+            # What is no better against this noise is not looked at against its own.
+            here = self.fitter.again(best.fit).cost
+            better = [point for cost, point in ends if cost < here - ENOUGH]
+            other = likeliest([best, *(settled_at(self.fitter, hypothesis, point) for point in better)])
             if other.total > best.total - ENOUGH:
                 break
-            # The derivatives where it is, against its own noise.
-            best = by_itself(self.fitter, other, evaluations=1)
+            best = other
         return best
 
     def _refined(self, contenders: Sequence[Contender], count: int) -> list[Contender]:
@@ -251,9 +259,9 @@ class Search:
                 made[k] = from_beginnings(self.fitter, contender, self.possible, self.seed)
         return likeliest_first(made)
 
-    def _pairs(self, singles: Sequence[Contender], strong: bool) -> list[Contender]:
-        """Add a second effect to the best; none where none shows."""
-        pairs = Pairs(self.fitter, self.possible, self.hints)
+    def _pairs(self, singles: Sequence[Contender], strong: bool, known: Sequence[Contender] = ()) -> list[Contender]:
+        """Add a second effect to the best, beside pairs that are known; none where none shows."""
+        pairs = Pairs(self.fitter, self.possible, self.hints, known)
         # A second effect shows beside the best one; beside the next best only where the best leaves a gap.
         wanting = strong and self._is_wanting(singles[0])
         near = firsts(singles[: _FIRSTS if wanting else 1])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+
 import numpy as np
 
 from .attribute import Attribution
@@ -10,7 +12,7 @@ from .contender import Contender
 from .predictive import is_right
 from .result import Verdict
 
-__all__ = ["judge", "ties"]
+__all__ = ["judge", "refused", "ties"]
 
 # Where noise may explain it all, an effect is named only where that is less probable than this.
 _LEAST_DOUBT = 0.05
@@ -38,6 +40,33 @@ def judge(comparison: Comparison, attribution: Attribution, foretold: bool) -> t
     if not best.names:
         return "unexplained", best
     return ("explained" if is_right(comparison, best.residual) and foretold else "unexplained"), best
+
+
+def refused(
+    comparison: Comparison, contenders: Sequence[Contender], stands: Callable[[Contender], bool]
+) -> tuple[tuple[str, ...], ...]:
+    """Return the names of those that evidence ranks before a tied one, and trials that no fit saw after it.
+
+    Where evidence cannot part hypotheses, what they say of trials left out does: the first that passes the predictive
+    test and stands there leads. Where none does, none is refused.
+
+    Parameters
+    ----------
+    comparison
+        The dataset.
+    contenders
+        Those whose trials were left out, by evidence.
+    stands
+        Whether one stands on trials that its fit had not seen.
+    """
+    before: list[tuple[str, ...]] = []
+    for contender in contenders:
+        if not contender.names or contenders[0].log_evidence - contender.log_evidence >= _TIED:
+            break
+        if is_right(comparison, contender.residual) and stands(contender):
+            return tuple(before)
+        before.append(contender.names)
+    return ()
 
 
 def ties(comparison: Comparison, attribution: Attribution, chosen: Contender) -> dict[str, tuple[str, ...]]:

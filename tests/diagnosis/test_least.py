@@ -1,0 +1,56 @@
+"""The best of many points, bounded by a part of the trials."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tumblers import _core
+from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.fit import Fitter
+from tumblers.diagnosis.hypothesis import Hypothesis
+from tumblers.diagnosis.least import least
+from tumblers.diagnosis.simulator import Simulator
+from tumblers.effects.magnetization_misalignment import MagnetizationMisalignment
+
+from .lab import measure, plan
+
+
+def ready() -> tuple[Fitter, Hypothesis, list[np.ndarray]]:
+    """Return a dataset with an effect, and points around it and over its range."""
+    dataset = measure(plan(), (MagnetizationMisalignment(theta1_deg=6.0, theta2_deg=3.0),))
+    simulator = Simulator(dataset, 1)
+    fitter = Fitter(Comparison(dataset, simulator))
+    hypothesis = Hypothesis.of(MagnetizationMisalignment, [simulator.nominal(i) for i in fitter.trials])
+    return fitter, hypothesis, list(np.random.default_rng(1).uniform(hypothesis.low, hypothesis.high, (48, 2)))
+
+
+@pytest.mark.parametrize(("train", "share"), [(None, 1.0), ((0, 1, 2), 0.5)])
+def test_the_best_points_are_those_that_simulating_all_would_give(train: tuple[int, ...] | None, share: float) -> None:
+    fitter, hypothesis, points = ready()
+    found = least(fitter, hypothesis, points, 3, train, share)
+    residuals = fitter.residuals(hypothesis, points, train, share)
+    costs = [fitter.cost(residual, point, train) for residual, point in zip(residuals, points, strict=True)]
+    assert [cost for cost, _ in found] == sorted(costs)[:3]
+    assert all(point is points[k] for (_, point), k in zip(found, np.argsort(costs), strict=False))
+
+
+def test_a_part_of_the_rollouts_is_enough(monkeypatch: pytest.MonkeyPatch) -> None:
+    fitter, hypothesis, points = ready()
+    native, made = _core.rollouts, []
+
+    def counted(trials: list[_core.Trial], *rest: object) -> object:
+        made.append(len(trials))
+        return native(trials, *rest)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(_core, "rollouts", counted)
+    least(fitter, hypothesis, points, 1)
+    assert sum(made) < 0.75 * len(points) * len(fitter.trials)
+
+
+@pytest.mark.parametrize("count", [1, 3, 8])
+def test_few_points_are_all_simulated(count: int) -> None:
+    fitter, hypothesis, points = ready()
+    found = least(fitter, hypothesis, points[:2], count)
+    assert len(found) == min(count, 2)
+    assert found[0][0] == min(cost for cost, _ in found)
