@@ -114,7 +114,8 @@ class Search:
         pairs: list[Contender] = []
         if singles[0].total <= nominal.total - self.worth:
             pairs = self._pairs(singles, strong)
-        if strong and self._is_wanting(likeliest([*singles, *pairs])):
+        # Where two effects leave no gap, what is far away is not looked for.
+        if strong and not self._is_enough([*singles, *pairs]):
             far = settled(self.fitter, self._far(singles, refined), self.tell)
             gain = singles[0].total - far[0].total
             singles = far
@@ -194,6 +195,10 @@ class Search:
         if singles and not is_right(self.comparison, likeliest([nominal, *singles]).residual):
             singles = self._searched(nominal, singles)
         return likeliest_first(singles)
+
+    def _is_enough(self, contenders: Sequence[Contender]) -> bool:
+        best = likeliest(contenders)
+        return not self._is_wanting(best) or (len(best.names) > 1 and is_right(self.comparison, best.residual))
 
     def _is_wanting(self, contender: Contender) -> bool:
         return mean_square(self.comparison, contender.residual) > _WANTING
