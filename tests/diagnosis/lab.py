@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from math import cos, radians, sin
+from typing import Any
 
 import numpy as np
+import pytest
 
+from tumblers import _core
 from tumblers.dataset import Dataset, LabTrial, Outcome, Sensor, Track
 from tumblers.diagnosis.pose import body_axis, heading_of, tilt_of
 from tumblers.diagnosis.simulator import Job, Simulator
@@ -28,6 +31,19 @@ PLANS: tuple[tuple[str, Field, float], ...] = (
     ("s30", drive(0.020, 2.0), 30.0),
     ("still", UPWARDS, 0.0),
 )
+
+
+def rollouts_made(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Count the rollouts of each batch from now on."""
+    made: list[int] = []
+    native = _core.rollouts
+
+    def rollouts(trials: list[Any], *rest: Any, **more: Any) -> list[Any]:
+        made.append(len(trials))
+        return list(native(trials, *rest, **more))
+
+    monkeypatch.setattr(_core, "rollouts", rollouts)
+    return made
 
 
 def plan(fields: Sequence[tuple[str, Field, float]] = PLANS, duration_s: float = 0.6) -> Dataset:

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from math import log
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from tumblers import diagnose
+from tumblers.diagnosis.attribute import REFUSED
 from tumblers.diagnosis.comparison import Comparison, Residual
 from tumblers.diagnosis.contender import Contender, of_fit
+from tumblers.diagnosis.diagnose import _Conclusion
 from tumblers.diagnosis.fit import Fitter
 from tumblers.diagnosis.floor import SHARED
 from tumblers.diagnosis.held_out import HeldOut, folds, held_out, is_foretold, shrink
@@ -18,6 +22,7 @@ from tumblers.diagnosis.pose import Path
 from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.field import StaticField
+from tumblers.presets import drive
 
 from .lab import UPWARDS, measure, plan, without
 
@@ -160,3 +165,21 @@ def test_a_fit_without_a_trial_starts_from_what_the_others_know(monkeypatch: pyt
     there = fitted.point[0]
     assert starts[(1,)] == [there, pytest.approx(0.0, abs=1e-6)]
     assert starts[(0,)] == [there, pytest.approx(there, rel=0.01)]
+
+
+def test_what_trials_left_out_refuse_is_named_after_a_tied_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    # On slopes along y alone, less friction and less friction along y are the same.
+    slopes = [("s30", drive(0.020, 2.0), 30.0), ("f5", drive(0.010, 5.0), 0.0)]
+    dataset = measure(plan(slopes, duration_s=0.3), (FrictionCoefficient(factor=0.8),))
+    names = ["friction_coefficient", "friction_anisotropy"]
+    before = diagnose(dataset, effects=names, jobs=1)
+    first = before.ranking[0].effects
+    assert first == ("friction_coefficient",)
+    monkeypatch.setattr(_Conclusion, "stands", lambda self, contender: contender.names != first)
+    after = diagnose(dataset, effects=names, jobs=1)
+    assert [effect.name for effect in after.effects] == ["friction_anisotropy"]
+    assert after.ranking[0].effects == ("friction_anisotropy",)
+    assert after.ranking[1].log_evidence == pytest.approx(before.ranking[0].log_evidence + log(REFUSED), abs=1e-6)
+    assert any("refuse" in said for said in after.assumptions)
+    monkeypatch.setattr(_Conclusion, "stands", lambda self, contender: False)
+    assert diagnose(dataset, effects=names, jobs=1).ranking[0].effects == first

@@ -31,7 +31,7 @@ from tumblers.effects.size_error import SizeError
 from tumblers.effects.surface_roughness import SurfaceRoughness
 from tumblers.field import StaticField
 
-from .lab import PLANS, measure, plan
+from .lab import PLANS, measure, plan, rollouts_made
 
 OFF = StaticField(strength_T=0.0, direction=(0.0, 1.0, 0.0))
 # A robot that lies on a slope: it slides where friction is a quarter below the nominal one.
@@ -300,6 +300,22 @@ def test_an_effect_promises_something_where_it_is_not_yet_where_it_should_be() -
     idle, right = (of_fit(fitter, fitter.fit(hypothesis, np.array([u]), evaluations=1)) for u in (0.0, there))
     assert promise(fitter, idle, 0) > CLEAR
     assert promise(fitter, right, 0) < 0.0
+
+
+def test_a_descent_ends_where_the_fit_does_and_its_derivatives_serve_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    dataset = measure(plan(PLANS[:2]), (MagnetizationStrength(factor=0.9),))
+    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
+    (hypothesis,) = Search(fitter, [MagnetizationStrength], quiet, 0).possible
+    start = np.array([0.1])
+    fit = fitter.fit(hypothesis, start, evaluations=4)
+    assert fitter.descend(hypothesis, start, evaluations=4) == (fit.cost, fit.point)
+    # Against another noise the same paths do.
+    fitter.take_likeliest_noise(())
+    made = rollouts_made(monkeypatch)
+    fitter.comparison.take_noise_of(())
+    again = fitter.fit(hypothesis, fit.point, evaluations=1, steps=fit.steps)
+    assert sum(made) == 0
+    assert again.steps == fit.steps
 
 
 @pytest.mark.parametrize("name", CATALOGUE)

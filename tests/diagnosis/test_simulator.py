@@ -1,39 +1,23 @@
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pytest
 
-from tumblers import _core
 from tumblers.diagnosis import simulator as simulators
 from tumblers.diagnosis.simulator import Job, Simulator
 from tumblers.effects.camera_calibration import CameraCalibration
 from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.field import TableField
 
-from .lab import plan
+from .lab import plan, rollouts_made
 
 
 def jobs(first: int, count: int) -> list[Job]:
     return [Job(0, (FrictionCoefficient(factor=1.0 + 0.01 * k),)) for k in range(first, first + count)]
 
 
-def runs(monkeypatch: pytest.MonkeyPatch) -> list[int]:
-    """Count the rollouts of each batch from now on."""
-    made: list[int] = []
-    native = _core.rollouts
-
-    def rollouts(trials: list[Any], *rest: Any) -> list[Any]:
-        made.append(len(trials))
-        return list(native(trials, *rest))
-
-    monkeypatch.setattr(_core, "rollouts", rollouts)
-    return made
-
-
 def test_what_was_run_is_not_run_again_while_it_fits(monkeypatch: pytest.MonkeyPatch) -> None:
-    simulator, made = Simulator(plan(), 1), runs(monkeypatch)
+    simulator, made = Simulator(plan(), 1), rollouts_made(monkeypatch)
     first = simulator.run(jobs(0, 4))
     again = simulator.run(jobs(2, 4))
     assert made == [4, 2]
@@ -45,7 +29,7 @@ def test_what_was_run_is_not_run_again_while_it_fits(monkeypatch: pytest.MonkeyP
 
 
 def test_the_oldest_makes_room_and_comes_back_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
-    simulator, made = Simulator(plan(), 1), runs(monkeypatch)
+    simulator, made = Simulator(plan(), 1), rollouts_made(monkeypatch)
     first = simulator.run(jobs(0, 1))[0]
     room = simulator._kept
     assert room == sum(simulators._size(rollout) for rollout, _ in simulator._known.values())

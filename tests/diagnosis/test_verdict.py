@@ -83,15 +83,22 @@ def test_between_what_evidence_ties_trials_left_out_decide(
     evidence: tuple[float, ...], left: tuple[float, ...], standing: set[str], first: str
 ) -> None:
     names = ("viscous_drag", "field_rolloff", "size_error")
-    each = zip(names, left, np.exp(evidence) / np.exp(evidence).sum(), evidence, strict=True)
+    # One more counts as the nominal model, which is improbable, and has left it its share of the lapse.
+    share = LAPSE / 5
+    shares = share + (1.0 - LAPSE) * np.exp(evidence) / np.exp(evidence).sum()
+    each = zip(names, left, shares, evidence, strict=True)
     made = [replace(contender(name, sigmas, float(p)), log_evidence=e) for name, sigmas, p, e in each]
-    attribution = Attribution((*made, replace(contender("", 2.0, 0.0), log_evidence=-90.0)), 1.0, False)
+    rest = contender("", 2.0, 2.0 * share), contender("adhesion_coefficient", 2.0, 0.0)
+    attribution = Attribution((*made, *(replace(c, log_evidence=-90.0) for c in rest)), 1.0, False)
     floors = (SimpleNamespace(tracked=COUNT, outcome_scale={}),)
     comparison = SimpleNamespace(sizes=(COUNT,), floors=floors)
     found = attribution.refusing(refused(comparison, made, lambda c: c.names[0] in standing))  # type: ignore[arg-type]
     assert found.contenders[0].names == (first,)
     assert sum(c.probability for c in found.contenders) == pytest.approx(1.0)
     assert found.contenders[0].probability == max(c.probability for c in found.contenders)
+    # What the nominal model has of the lapse alone is no doubt, however much was refused beside it.
+    assert found.doubt == pytest.approx(0.0, abs=1e-12)
+    assert {c.names for c in found.contenders if not c.probability} == {("adhesion_coefficient",)}
     if first == names[0]:
         assert found.contenders == attribution.contenders
 

@@ -26,6 +26,15 @@ pub enum Outcome<T> {
     Stopped,
 }
 
+/// When a rollout ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Until {
+    /// At the trial's end.
+    End,
+    /// Before the first step that turns the body by more than it shows, or at the end: what comes after is no motion.
+    Unresolved,
+}
+
 /// How a batch is watched and stopped from another thread.
 #[derive(Debug, Default)]
 pub struct Control {
@@ -60,6 +69,7 @@ pub fn sweep(
 pub fn rollouts(
     trials: &[Trial],
     every: &[u64],
+    until: Until,
     threads: usize,
     control: &Control,
 ) -> Result<Vec<Outcome<Rollout>>, rayon::ThreadPoolBuildError> {
@@ -71,7 +81,7 @@ pub fn rollouts(
         let ended = run(trial, control, |stepper| {
             done += 1;
             rollout.unconverged_steps += u64::from(!stepper.solution().converged);
-            if !stepper.is_resolved() {
+            if until == Until::Unresolved && !stepper.is_resolved() {
                 return Err(Ended::Diverged(Diverged { time: stepper.time() }));
             }
             if done % every == 0 || done == trial.steps() {

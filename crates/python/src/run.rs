@@ -2,7 +2,7 @@
 
 use crate::convert::{refused, solver, table};
 use crate::trial::PyTrial;
-use dynamics::batch::{Control, Outcome, rollouts as run_rollouts, sweep as run_batch};
+use dynamics::batch::{Control, Outcome, Until, rollouts as run_rollouts, sweep as run_batch};
 use dynamics::recording::{Ended, record};
 use dynamics::{Metrics, Rollout, Trial};
 use numpy::IntoPyArray;
@@ -119,20 +119,23 @@ pub fn sweep<'py>(
 }
 
 #[pyfunction]
-#[pyo3(signature = (trials, every, threads=0, on_progress=None))]
+#[pyo3(signature = (trials, every, threads=0, on_progress=None, *, while_resolved=false))]
 pub fn rollouts<'py>(
     py: Python<'py>,
     trials: Vec<PyRef<'py, PyTrial>>,
     every: Vec<u64>,
     threads: usize,
     on_progress: Option<Py<PyAny>>,
+    while_resolved: bool,
 ) -> PyResult<Vec<Bound<'py, PyDict>>> {
     if every.len() != trials.len() || every.contains(&0) {
         return Err(refused("every is refused, expected a whole number of at least 1 for each trial"));
     }
     let trials: Vec<Trial> = trials.iter().map(|trial| trial.0.clone()).collect();
-    let outcomes =
-        watched(py, trials.len(), on_progress.as_ref(), |control| run_rollouts(&trials, &every, threads, control))?;
+    let until = if while_resolved { Until::Unresolved } else { Until::End };
+    let outcomes = watched(py, trials.len(), on_progress.as_ref(), |control| {
+        run_rollouts(&trials, &every, until, threads, control)
+    })?;
     outcomes
         .into_iter()
         .map(|outcome| {

@@ -34,7 +34,7 @@ from .predictive import is_right
 from .search import Search
 from .tolerated import is_tolerated
 
-__all__ = ["LAPSE", "PRIOR", "REFUSED", "SECOND", "Attribution", "attribute"]
+__all__ = ["LAPSE", "PRIOR", "REFUSED", "SECOND", "Attribution", "attribute", "seen_from_the_best"]
 
 Floats = NDArray[np.float64]
 
@@ -48,8 +48,9 @@ SECOND = 10.0
 # search found. Shared by all, and of the order of what datasets with a known truth showed while this was developed.
 LAPSE = 0.12
 # By how much less probable the nominal model is once it has failed the predictive test, and something else is likelier
-# by that: where one trial alone is far off, neighbouring frames that count as one say too little of it. A choice:
-# how often a right model fails the test is known to a few per cent only.
+# by that: where one trial alone is far off, neighbouring frames that count as one say too little of it. And an effect
+# that fails on trials left out where a tied one does not. A choice: how often a right model fails either is known to a
+# few per cent only.
 REFUSED = 0.02
 # Trial points of the last fit of the best, from where it is: intervals are no better than it.
 _LAST_POINTS = 12
@@ -69,11 +70,14 @@ class Attribution:
         c.
     nominal_is_right
         Whether the nominal model passes the predictive test against its own noise.
+    refused
+        Names of those that trials left out put behind a tied one.
     """
 
     contenders: tuple[Contender, ...]
     dispersion: float
     nominal_is_right: bool
+    refused: tuple[tuple[str, ...], ...] = ()
 
     @property
     def nominal(self) -> Contender:
@@ -83,12 +87,18 @@ class Attribution:
     @property
     def doubt(self) -> float:
         """The nominal model's probability but for its shares of `LAPSE`, which are large where hypotheses are few."""
-        # What counts as the nominal model has left it its own share, and has no probability any more.
-        shares = 1 + sum(bool(c.names) and c.probability == 0.0 for c in self.contenders)
-        return self.nominal.probability - shares * LAPSE / len(self.contenders)
+        return self.nominal.probability - self._lapse(self.nominal)
+
+    def _lapse(self, contender: Contender) -> float:
+        """Return a contender's share of `LAPSE`; what counts as the nominal model has left it its own."""
+        share = LAPSE / len(self.contenders)
+        merged = [c for c in self.contenders if c.names and c.probability == 0.0]
+        if not contender.names:
+            return (1 + len(merged)) * share
+        return 0.0 if contender in merged else share
 
     def refusing(self, refused: Collection[tuple[str, ...]]) -> Attribution:
-        """Return the attribution with some contenders as improbable as `REFUSED` makes them.
+        """Return the attribution with some contenders as improbable beside the others as `REFUSED` makes them.
 
         Parameters
         ----------
@@ -97,17 +107,17 @@ class Attribution:
         """
         if not refused:
             return self
-        share = LAPSE / len(self.contenders)
-        weighed = []
-        for c in self.contenders:
-            if c.names in refused:
-                left = share + REFUSED * max(c.probability - share, 0.0)
-                c = replace(c, log_evidence=c.log_evidence + log(REFUSED), probability=left)
-            weighed.append(c)
-        total = sum(c.probability for c in weighed)
-        made = [replace(c, probability=c.probability / total) for c in weighed]
+        above = [(c.probability - self._lapse(c)) * (REFUSED if c.names in refused else 1.0) for c in self.contenders]
+        made = [
+            replace(
+                c,
+                log_evidence=c.log_evidence + (log(REFUSED) if c.names in refused else 0.0),
+                probability=self._lapse(c) + (1.0 - LAPSE) * more / sum(above),
+            )
+            for c, more in zip(self.contenders, above, strict=True)
+        ]
         made.sort(key=lambda c: -c.log_evidence)
-        return replace(self, contenders=tuple(made))
+        return replace(self, contenders=tuple(made), refused=(*self.refused, *refused))
 
 
 def attribute(
@@ -137,10 +147,22 @@ def attribute(
         ranked, dispersion = _ranked(contenders, comparison, search.names, right)
     if right:
         ranked = _with_tolerated(ranked, comparison)
-    # From here on all are seen against one noise: that around the best, as much of it as the best needs.
-    fitter.take_likeliest_noise(ranked[0].effects)
-    seen = [_seen(fitter, contender, first=k == 0) for k, contender in enumerate(ranked)]
-    return Attribution(tuple(seen), dispersion, right)
+    return seen_from_the_best(fitter, Attribution(tuple(ranked), dispersion, right))
+
+
+def seen_from_the_best(fitter: Fitter, attribution: Attribution) -> Attribution:
+    """Take the noise around the best, as much of it as the best needs, fit that once more, and see all against it.
+
+    Parameters
+    ----------
+    fitter
+        Of the dataset; the noise stays.
+    attribution
+        Every hypothesis, against whatever noise.
+    """
+    fitter.take_likeliest_noise(attribution.contenders[0].effects)
+    seen = [_seen(fitter, contender, first=k == 0) for k, contender in enumerate(attribution.contenders)]
+    return replace(attribution, contenders=tuple(seen))
 
 
 def _nominal_is_right(fitter: Fitter) -> bool:

@@ -16,7 +16,7 @@ from ..effects.catalogue import CATALOGUE, get
 from ..errors import InputError, show
 from ..progress import OnPhase, phases
 from ..version import __version__
-from .attribute import LAPSE, PRIOR, REFUSED, SECOND, Attribution, attribute
+from .attribute import LAPSE, PRIOR, REFUSED, SECOND, Attribution, attribute, seen_from_the_best
 from .comparison import Comparison
 from .contender import Contender
 from .diagnosis import Diagnosis
@@ -29,6 +29,7 @@ from .loss import robust_cost
 from .next_trial import next_trials
 from .overlay import overlays
 from .posterior import samples
+from .predictive import is_right
 from .result import EffectEstimate, HeatMap, Interval, NextTrial, RankedHypothesis, Region, TrialFloor
 from .simulator import Job, Simulator
 from .verdict import judge, refused, ties
@@ -128,18 +129,38 @@ class _Conclusion:
         nominal = self.held_out(self.attribution.nominal)
         return is_foretold(self.fitter, nominal, self.held_out(contender), gap, contender)
 
-    def diagnosis(self, start: float) -> Diagnosis:
-        comparison, tell = self.comparison, self.tell
-        dataset = comparison.dataset
-        nominal = self.held_out(self.attribution.nominal)
+    def measure(self) -> list[Contender]:
+        """Return the likeliest contenders, what they say of trials left out being known."""
         considered = [
             c for k, c in enumerate(self.attribution.contenders[:_MEASURED]) if k == 0 or c.probability > _PROBABLE
         ]
         for k, contender in enumerate(considered):
-            tell("trials left out", k, len(considered))
+            self.tell("trials left out", k, len(considered))
             self.held_out(contender)
-        behind = refused(comparison, considered, self.stands)
-        attribution = self.attribution = self.attribution.refusing(behind)
+        return considered
+
+    def led_by_what_stands(self) -> Attribution:
+        """Return the attribution led by what stands on trials left out, of what evidence ties at the top.
+
+        The one that is to lead has to stand against its own noise too; if not, all stays as it was.
+        """
+        before, measured, floors = self.attribution, self.measured, self.comparison.floors
+        behind = refused(self.comparison, self.measure(), self.stands)
+        if not behind:
+            return before
+        self.attribution = after = seen_from_the_best(self.fitter, before.refusing(behind))
+        self.measured = {}
+        best = self.measure()[0]
+        if is_right(self.comparison, best.residual) and self.stands(best):
+            return after
+        self.attribution, self.measured, self.comparison.floors = before, measured, floors
+        return before
+
+    def diagnosis(self, start: float) -> Diagnosis:
+        comparison, tell = self.comparison, self.tell
+        dataset = comparison.dataset
+        attribution = self.attribution = self.led_by_what_stands()
+        nominal = self.held_out(attribution.nominal)
         best = attribution.contenders[0]
         gap = shrink(self.fitter, self.held_out(best), self.seed)
         verdict, chosen = judge(comparison, attribution, self.stands(best))
@@ -335,6 +356,12 @@ def _assumptions(comparison: Comparison, attribution: Attribution) -> tuple[str,
         "Evidence is Laplace's approximation; intervals are 90 % likelihood ratios along the ridge of the posterior, "
         "and what multiplies a nominal number, or adds to a nominal force, is known no better than that.",
     ]
+    if attribution.refused:
+        names = ", ".join(" + ".join(effects) for effects in attribution.refused)
+        said.append(
+            f"What evidence ranks first as nearly alike, and trials left out refuse, counts {REFUSED:g} of that beside "
+            f"one that they do not: {names}."
+        )
     tracks = [trial.track for trial in comparison.dataset.trials if trial.track is not None]
     observed = [reader.observed for reader in comparison.readers]
     if any(one.frames - one.lost > len(one.time_s) and not one.slid_m for one in observed):

@@ -42,7 +42,8 @@ _SHARES = (1.0, 0.5, 0.25, 0.1)
 _MIXED = 3
 # How often the trials' weights are taken anew, and the change of one that asks for it.
 _WEIGHINGS, _REWEIGHED = 2, 1.3
-# A derivative's step changes the differences by about this much (root mean square), within these bounds.
+# A derivative's step changes the differences by about this much (root mean square), within these bounds; the first one
+# where nothing is known yet.
 _CHANGE, _LEAST_STEP, _MOST_STEP, _FIRST_STEP = 0.3, 1e-3, 5e-2, 1e-2
 # Derivatives of a step that is off by more than this factor are taken again.
 _RESTEPPED = 3.0

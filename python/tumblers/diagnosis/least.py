@@ -7,8 +7,8 @@ min_n Σ_(t in a part) c_t(u, n) <= min_n Σ_t c_t(u, n)
 ```
 
 A point that costs more over a part of the trials than the best ones do over all is left there (Land and Doig 1960).
-The trials come first that part the points most for their time. As far as the fit of the nuisances finds their best,
-the answer is the one that simulating all would give.
+The trials come first that part the points most for their time. The nuisances are fitted by least squares, not by the
+objective, so that the bound may be off by a little: by less than what is clear, it is not used.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from ..effects.base import Effect
 from .comparison import Residual
 from .fit import Fitter
 from .hypothesis import Hypothesis
+from .thresholds import CLEAR
 
 __all__ = ["least"]
 
@@ -78,7 +79,7 @@ def least(
         # What promises most lowers the limit for the rest.
         measure(sorted(left, key=lambda k: (bounds[k], k))[:count])
         limit = sorted(costs.values())[count - 1]
-        left = [k for k in left if k not in costs and bounds[k] <= limit]
+        left = [k for k in left if k not in costs and bounds[k] <= limit + CLEAR]
     measure(left)
     best = sorted(costs, key=lambda k: (costs[k], k))[:count]
     return [(costs[k], points[k]) for k in best]

@@ -51,8 +51,8 @@ _WANTING = 1.1
 # Hypotheses that are fitted again from the beginnings of the trials; and of those whose points over the range follow
 # the beginnings better than their fit does.
 _REFINED, _PROMISING = 2, 4
-# What is found farther away is a new first of pairs where it takes more than this share of what it leaves off the
-# objective.
+# The leader of before, found farther away, is a new first of pairs where that takes more than this share of what it
+# leaves off the objective.
 _FARTHER = 0.1
 # Effects to which a second is added, the farther ones only where the best leaves a gap.
 _FIRSTS = 2
@@ -108,20 +108,22 @@ class Search:
         if not strong and singles[0].total > nominal.total - self.worth:
             return self._concluded(nominal, singles)
         singles = self._all_shaken(singles)
-        refined = {contender.names for contender in singles[:_REFINED]}
+        refined: set[tuple[str, ...]] = set()
         if strong and self._is_wanting(singles[0]):
+            refined = {c.names for k, c in enumerate(singles[:_REFINED]) if k == 0 or c.free <= MANY}
             singles = settled(self.fitter, self._refined(singles, _REFINED), self.tell)
-        pairs: list[Contender] = []
-        if singles[0].total <= nominal.total - self.worth:
+        pairs, worth = [], nominal.total - self.worth
+        if singles[0].total <= worth:
             pairs = self._pairs(singles, strong)
         # Where two effects leave no gap, what is far away is not looked for.
         if strong and not self._is_enough([*singles, *pairs]):
             far = settled(self.fitter, self._far(singles, refined), self.tell)
-            gain = singles[0].total - far[0].total
-            singles = far
-            if gain > max(CLEAR, _FARTHER * far[0].cost):
+            near, singles = singles, far
+            more = CLEAR if near[0].names != far[0].names else max(CLEAR, _FARTHER * far[0].cost)
+            untried = near[0].total > worth
+            if far[0].total <= worth and (untried or near[0].total - far[0].total > more):
                 pairs = self._pairs(singles, strong, pairs)
-        if pairs and singles[0].total <= nominal.total - self.worth:
+        if pairs and singles[0].total <= worth:
             pairs = likeliest_first([self._shaken(pairs[0]), *pairs[1:]])
             singles = [self._nested(pairs[0], singles[0]), *singles[1:]]
         return self._concluded(nominal, likeliest_first([*singles, *pairs]))
@@ -168,7 +170,7 @@ class Search:
         promises = {k: promise(self.fitter, made[k], self.seed) for k in few}
         promising = sorted(few, key=lambda k: -promises[k])[:_PROMISING]
         for k, contender in enumerate(made):
-            many = contender.free > MANY and contender.names != singles[0].names
+            many = contender.free > MANY and contender.names not in refined
             if many or (k in promising and promises[k] > CLEAR):
                 made[k] = from_beginnings(self.fitter, contender, self.possible, self.seed)
         return likeliest_first(made)
@@ -243,10 +245,11 @@ class Search:
             points = points_around(best.fit, self.comparison.alike, rng)
             starts = [point for _, point in least(self.fitter, hypothesis, points, _SHAKEN_FITS)]
             ends = [self.fitter.descend(hypothesis, start, evaluations=_SHAKEN_POINTS) for start in starts]
-            # What is no better against this noise is not looked at against its own.
-            here = self.fitter.again(best.fit).cost
-            better = [point for cost, point in ends if cost < here - ENOUGH]
-            other = likeliest([best, *(settled_at(self.fitter, hypothesis, point) for point in better)])
+            cost, point = min(ends, key=lambda end: end[0])
+            # What is clearly worse against this noise is not looked at against its own.
+            if cost > self.fitter.again(best.fit).cost + CLEAR:
+                break
+            other = settled_at(self.fitter, hypothesis, point)
             if other.total > best.total - ENOUGH:
                 break
             best = other
@@ -292,4 +295,9 @@ class Search:
         # However little the best leaves: against a sharper noise another may leave as little.
         if strong:
             found = self._refined(found, _PAIRS_REFINED)
-        return settled(self.fitter, found, self.tell)
+        found = settled(self.fitter, found, self.tell)
+        # What looked better against another's noise must not take the place of what was settled.
+        before = {frozenset(pair.names): pair for pair in known if pair.settled}
+        better = (before.get(frozenset(pair.names), pair) for pair in found)
+        both = zip(found, better, strict=True)
+        return likeliest_first(likeliest([pair, old]) if pair.settled else old for pair, old in both)

@@ -48,7 +48,7 @@ def refused(
     """Return the names of those that evidence ranks before a tied one, and trials that no fit saw after it.
 
     Where evidence cannot part hypotheses, what they say of trials left out does: the first that passes the predictive
-    test and stands there leads. Where none does, none is refused.
+    test and stands there leads. Where none does, or the nominal model is among them, none is refused.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def refused(
     before: list[tuple[str, ...]] = []
     for contender in contenders:
         if not contender.names or contenders[0].log_evidence - contender.log_evidence >= _TIED:
-            break
+            return ()
         if is_right(comparison, contender.residual) and stands(contender):
             return tuple(before)
         before.append(contender.names)
