@@ -117,7 +117,8 @@ fn a_rollout_ends_where_a_step_does_not_show_the_spin() {
     });
     let rows = 1 + resolved.count();
     assert!((100..200).contains(&rows), "{rows} rows");
-    let seen = |until| walked(rollouts(&[trial.clone()], &[1], until, 1, &Control::default()).unwrap()).remove(0);
+    let seen =
+        |until| walked(rollouts(std::slice::from_ref(&trial), &[1], until, 1, &Control::default()).unwrap()).remove(0);
     let (whole, ended) = (seen(Until::End), seen(Until::Unresolved));
     assert_eq!([whole.time.len(), ended.time.len()], [trial.steps() as usize + 1, rows]);
     assert_eq!(
