@@ -14,12 +14,13 @@ from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.fit import Fitter
 from tumblers.diagnosis.foretold import CLIMBS, RUNS, SLIDES, STAYS, Said, foretell
 from tumblers.diagnosis.information import information
-from tumblers.diagnosis.next_trial import next_trials
+from tumblers.diagnosis.next_trial import in_one_step, next_trials
 from tumblers.diagnosis.posterior import samples
 from tumblers.diagnosis.result import NextTrial
-from tumblers.diagnosis.simulator import Job, Simulator
+from tumblers.diagnosis.simulator import LONGEST_STEP_S, Job, Simulator
 from tumblers.effects import get
 from tumblers.effects.base import Effect
+from tumblers.effects.contact_compliance import ContactCompliance
 from tumblers.field import RotatingField, StaticField, field_from_table
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "aluminium_30deg"
@@ -235,3 +236,14 @@ def test_a_lab_s_own_slope_is_within_its_ranges(dataset: Dataset) -> None:
     known = replace(dataset, trials=tuple(replace(t, incline_deg=22.26) for t in dataset.trials))
     inside = [option for option in candidates(known, 40) if not option.outside]
     assert {option.incline_deg for option in inside} == {22.26}
+
+
+def test_all_hypotheses_are_foretold_in_one_step(dataset: Dataset) -> None:
+    rigid = (("friction_coefficient",), ((get(FRICTION).from_vector([1.1]),),))
+    soft = (("contact_compliance",), ((ContactCompliance(),), (ContactCompliance(compliance_m_per_N=0.01),)))
+    assert in_one_step(dataset, [rigid]).step_s == [LONGEST_STEP_S] * len(dataset.trials)
+    both = in_one_step(dataset, [rigid, soft])
+    finest = ContactCompliance(compliance_m_per_N=0.01).resolving_step_s
+    assert all(step <= finest < LONGEST_STEP_S for step in both.step_s)
+    steps = [both.scenario(Job(0, mine[-1])).run.fixed_step_s for _, mine in (rigid, soft)]
+    assert steps[0] == steps[1]

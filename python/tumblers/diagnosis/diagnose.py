@@ -26,7 +26,7 @@ from .floor import TOLERANCES
 from .held_out import HeldOut, folds, held_out, is_foretold, shrink
 from .localise import localise
 from .loss import robust_cost
-from .next_trial import next_trials
+from .next_trial import in_one_step, next_trials
 from .overlay import overlays
 from .posterior import samples
 from .predictive import is_right
@@ -262,11 +262,9 @@ class _Conclusion:
             hypotheses.append((contender.names, samples(self.fitter, self.attribution, contender, _SAMPLES, self.seed)))
         tell("the next trial", len(rivals), len(rivals) + 1)
         weights = [max(contender.probability, _LEAST_WEIGHT) for contender in rivals]
-        # A trial that nobody has measured needs no shorter steps than the longest.
         dataset = self.comparison.dataset
-        return next_trials(
-            dataset, Simulator(dataset, self.comparison.simulator.threads), hypotheses, self.seed, weights
-        )
+        simulator = in_one_step(dataset, hypotheses, self.comparison.simulator.threads)
+        return next_trials(dataset, simulator, hypotheses, self.seed, weights)
 
     def _ruled_out(self, chosen: Contender, tied: dict[str, tuple[str, ...]]) -> dict[str, str]:
         """For each improbable single effect the trial that speaks most against it."""

@@ -21,9 +21,12 @@ from .quantity import enumerated
 from .result import NextTrial
 from .simulator import Job, Simulator
 
-__all__ = ["next_trials"]
+__all__ = ["in_one_step", "next_trials"]
 
 Floats = NDArray[np.float64]
+
+# The names of a hypothesis's effects, and draws of the effects themselves.
+Drawn = tuple[tuple[str, ...], Sequence[tuple[Effect, ...]]]
 
 # Within the lab's ranges; and one beyond.
 _WITHIN, _BEYOND = 2, 1
@@ -43,7 +46,7 @@ _DRIFTS = 0.02
 def next_trials(
     dataset: Dataset,
     simulator: Simulator,
-    hypotheses: Sequence[tuple[tuple[str, ...], Sequence[tuple[Effect, ...]]]],
+    hypotheses: Sequence[Drawn],
     seed: int,
     probabilities: Sequence[float] | None = None,
 ) -> tuple[NextTrial, ...]:
@@ -108,6 +111,27 @@ def next_trials(
     chosen += [entry for entry in found if entry[1].outside and entry[0] > most][:_BEYOND]
     names = [names for names, _ in hypotheses]
     return tuple(_proposal(option, foretold, bits, names, seed) for bits, option, foretold in chosen)
+
+
+def in_one_step(dataset: Dataset, hypotheses: Sequence[Drawn], threads: int = 0) -> Simulator:
+    """Return a simulator whose steps are the longest in which all hypotheses can be run.
+
+    In steps of their own, their numerical errors would part them.
+
+    Parameters
+    ----------
+    dataset
+        What the lab did.
+    hypotheses
+        As for `next_trials`.
+    threads
+        Of the simulator.
+    """
+    simulator = Simulator(dataset, threads)
+    for _, draws in hypotheses:
+        for effects in draws:
+            simulator.shorten_steps_for(effects)
+    return simulator
 
 
 def _by_kind(entries: Sequence[tuple[float, Candidate, Foretold]]) -> list[list[Candidate]]:
