@@ -110,7 +110,7 @@ class Search:
         singles = self._all_shaken(singles)
         refined: set[tuple[str, ...]] = set()
         if strong and self._is_wanting(singles[0]):
-            refined = {c.names for k, c in enumerate(singles[:_REFINED]) if k == 0 or c.free <= MANY}
+            refined = {singles[k].names for k in _to_refine(singles, _REFINED)}
             singles = settled(self.fitter, self._refined(singles, _REFINED), self.tell)
         pairs, worth = [], nominal.total - self.worth
         if singles[0].total <= worth:
@@ -261,10 +261,9 @@ class Search:
         Where an effect is strong, paths soon have nothing in common any more; their beginnings still have.
         """
         made = list(contenders)
-        for k, contender in enumerate(made[:count]):
+        for k in _to_refine(made, count):
             self.tell("points over the whole range", k, count)
-            if k == 0 or contender.free <= MANY:
-                made[k] = from_beginnings(self.fitter, contender, self.possible, self.seed)
+            made[k] = from_beginnings(self.fitter, made[k], self.possible, self.seed)
         return likeliest_first(made)
 
     def _pairs(self, singles: Sequence[Contender], strong: bool, known: Sequence[Contender] = ()) -> list[Contender]:
@@ -301,3 +300,8 @@ class Search:
         better = (before.get(frozenset(pair.names), pair) for pair in found)
         both = zip(found, better, strict=True)
         return likeliest_first(likeliest([pair, old]) if pair.settled else old for pair, old in both)
+
+
+def _to_refine(contenders: Sequence[Contender], count: int) -> list[int]:
+    """Return the places, of the first so many, of the best one and of those with few parameters."""
+    return [k for k, contender in enumerate(contenders[:count]) if k == 0 or contender.free <= MANY]
