@@ -105,8 +105,6 @@ class Attribution:
         refused
             Their names.
         """
-        if not refused:
-            return self
         above = [(c.probability - self._lapse(c)) * (REFUSED if c.names in refused else 1.0) for c in self.contenders]
         made = [
             replace(

@@ -139,27 +139,24 @@ class _Conclusion:
             self.held_out(contender)
         return considered
 
-    def led_by_what_stands(self) -> Attribution:
-        """Return the attribution led by what stands on trials left out, of what evidence ties at the top.
+    def lead_by_what_stands(self) -> None:
+        """Let that lead which stands on trials left out, of what evidence ties at the top.
 
-        The one that is to lead has to stand against its own noise too; if not, all stays as it was.
+        It has to stand against its own noise too; if not, all stays as it was.
         """
         before, measured, floors = self.attribution, self.measured, self.comparison.floors
         behind = refused(self.comparison, self.measure(), self.stands)
         if not behind:
-            return before
-        self.attribution = after = seen_from_the_best(self.fitter, before.refusing(behind))
-        self.measured = {}
+            return
+        self.attribution, self.measured = seen_from_the_best(self.fitter, before.refusing(behind)), {}
         best = self.measure()[0]
-        if is_right(self.comparison, best.residual) and self.stands(best):
-            return after
-        self.attribution, self.measured, self.comparison.floors = before, measured, floors
-        return before
+        if not (is_right(self.comparison, best.residual) and self.stands(best)):
+            self.attribution, self.measured, self.comparison.floors = before, measured, floors
 
     def diagnosis(self, start: float) -> Diagnosis:
-        comparison, tell = self.comparison, self.tell
+        self.lead_by_what_stands()
+        comparison, attribution, tell = self.comparison, self.attribution, self.tell
         dataset = comparison.dataset
-        attribution = self.attribution = self.led_by_what_stands()
         nominal = self.held_out(attribution.nominal)
         best = attribution.contenders[0]
         gap = shrink(self.fitter, self.held_out(best), self.seed)
