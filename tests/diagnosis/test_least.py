@@ -39,12 +39,14 @@ def test_a_part_of_the_rollouts_is_enough(monkeypatch: pytest.MonkeyPatch) -> No
     fitter, hypothesis, points = ready()
     made = rollouts_made(monkeypatch)
     least(fitter, hypothesis, points, 1)
-    assert sum(made) < 0.75 * len(points) * len(fitter.trials)
+    # Of these points 0.73 of the rollouts were needed when this was written; all are where the bound leaves none out.
+    assert sum(made) < 0.8 * len(points) * len(fitter.trials)
 
 
 @pytest.mark.parametrize("count", [1, 3, 8])
 def test_few_points_are_all_simulated(count: int) -> None:
     fitter, hypothesis, points = ready()
     found = least(fitter, hypothesis, points[:2], count)
-    assert len(found) == min(count, 2)
-    assert found[0][0] == min(cost for cost, _ in found)
+    residuals = fitter.residuals(hypothesis, points[:2])
+    costs = [fitter.cost(residual, point) for residual, point in zip(residuals, points, strict=False)]
+    assert [cost for cost, _ in found] == sorted(costs)[:count]

@@ -310,12 +310,15 @@ def test_a_descent_ends_where_the_fit_does_and_its_derivatives_serve_again(monke
     fit = fitter.fit(hypothesis, start, evaluations=4)
     assert fitter.descend(hypothesis, start, evaluations=4) == (fit.cost, fit.point)
     # Against another noise the same paths do.
-    fitter.take_likeliest_noise(())
+    effects = hypothesis.effects(fit.point)
+    before = fitter.comparison.floors
+    fitter.comparison.take_noise_of(effects)
+    assert fitter.comparison.floors is not before
     made = rollouts_made(monkeypatch)
-    fitter.comparison.take_noise_of(())
     again = fitter.fit(hypothesis, fit.point, evaluations=1, steps=fit.steps)
     assert sum(made) == 0
-    assert again.steps == fit.steps
+    assert again.cost != fit.cost
+    assert_allclose(again.steps, fit.steps)
 
 
 @pytest.mark.parametrize("name", CATALOGUE)

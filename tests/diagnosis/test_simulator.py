@@ -3,10 +3,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tumblers import _core
 from tumblers.diagnosis import simulator as simulators
 from tumblers.diagnosis.simulator import Job, Simulator
 from tumblers.effects.camera_calibration import CameraCalibration
 from tumblers.effects.friction_coefficient import FrictionCoefficient
+from tumblers.effects.magnetization_strength import MagnetizationStrength
 from tumblers.field import TableField
 
 from .lab import plan, rollouts_made
@@ -44,6 +46,17 @@ def test_the_oldest_makes_room_and_comes_back_the_same(monkeypatch: pytest.Monke
     assert back is not None
     np.testing.assert_array_equal(first.position_m, back.position_m)
     np.testing.assert_array_equal(first.orientation, back.orientation)
+
+
+@pytest.mark.parametrize(("factor", "resolved"), [(1.0, True), (100.0, False)])
+def test_only_a_diagnosis_ends_a_rollout_that_spins(factor: float, resolved: bool) -> None:
+    simulator = Simulator(plan(), 1)
+    trial = simulator.scenario(Job(0, (MagnetizationStrength(factor=factor),))).trial()
+    (whole,), (ended,) = (_core.rollouts([trial], [1], 1, while_resolved=way) for way in (False, True))
+    rows = len(ended["time_s"])
+    assert len(whole["time_s"]) == trial.steps + 1
+    assert (rows == trial.steps + 1) == resolved
+    np.testing.assert_array_equal(ended["orientation"], whole["orientation"][:rows])
 
 
 def test_a_run_is_longer_by_as_much_as_the_camera_is_late_in_even_pieces() -> None:
