@@ -46,7 +46,8 @@ def test_a_part_of_the_rollouts_is_enough(monkeypatch: pytest.MonkeyPatch) -> No
 @pytest.mark.parametrize("count", [1, 3, 8])
 def test_few_points_are_all_simulated(count: int) -> None:
     fitter, hypothesis, points = ready()
-    found = least(fitter, hypothesis, points[:2], count)
-    residuals = fitter.residuals(hypothesis, points[:2])
-    costs = [fitter.cost(residual, point) for residual, point in zip(residuals, points, strict=False)]
+    two = points[:2]
+    found = least(fitter, hypothesis, two, count)
+    residuals = fitter.residuals(hypothesis, two)
+    costs = [fitter.cost(residual, point) for residual, point in zip(residuals, two, strict=True)]
     assert [cost for cost, _ in found] == sorted(costs)[:count]

@@ -49,13 +49,16 @@ def test_the_oldest_makes_room_and_comes_back_the_same(monkeypatch: pytest.Monke
 
 
 @pytest.mark.parametrize(("factor", "resolved"), [(1.0, True), (100.0, False)])
-def test_only_a_diagnosis_ends_a_rollout_that_spins(factor: float, resolved: bool) -> None:
+def test_a_diagnosis_ends_a_rollout_that_spins_and_nothing_else_does(factor: float, resolved: bool) -> None:
     simulator = Simulator(plan(), 1)
-    trial = simulator.scenario(Job(0, (MagnetizationStrength(factor=factor),))).trial()
-    (whole,), (ended,) = (_core.rollouts([trial], [1], 1, while_resolved=way) for way in (False, True))
+    job = Job(0, (MagnetizationStrength(factor=factor),))
+    trial = simulator.scenario(job).trial()
+    (path,), (whole,) = simulator.run([job]), _core.rollouts([trial], [1], 1)
+    (ended,) = _core.rollouts([trial], [1], 1, while_resolved=True)
     rows = len(ended["time_s"])
     assert len(whole["time_s"]) == trial.steps + 1
     assert (rows == trial.steps + 1) == resolved
+    assert (path is not None) == resolved
     np.testing.assert_array_equal(ended["orientation"], whole["orientation"][:rows])
 
 
