@@ -101,6 +101,13 @@ def test_where_the_tolerance_is_enough_the_camera_has_no_origin_and_no_clock() -
     assert "origin x" in comparison.nuisances.enough(local)
     local[:, 1] = bound * [1, 0.0, 0.0, 0.0, 0.0]
     assert "origin x" in comparison.nuisances.enough(local)
+    # What all share brings only those to an end whose own share adds to it, but all lie to one side.
+    local[:, 1] = bound * [1, 0.6, 0.4, 0.8, 0.5]
+    assert comparison.nuisances.enough(local) == {"clock", "origin y"}
+    local[:, 1] = bound * [0.98, 0.6, 0.4, 0.8, 0.5]
+    assert "origin x" in comparison.nuisances.enough(local)
+    local[:, 1] = bound * [1, -0.6, 0.4, 0.8, 0.5]
+    assert "origin x" in comparison.nuisances.enough(local)
     # Those that say nothing do not count.
     local[:, 1] = bound * [1, -1, 0.0, 0.0, 0.5]
     assert comparison.nuisances.enough(local) == {"clock", "origin y"}

@@ -13,7 +13,7 @@ from .fit import Fitter
 from .hypothesis import Hypothesis
 from .least import least
 
-__all__ = ["MANY", "from_beginnings", "promise"]
+__all__ = ["MANY", "beginning", "from_beginnings", "promise"]
 
 Floats = NDArray[np.float64]
 
@@ -73,10 +73,27 @@ def promise(fitter: Fitter, contender: Contender, seed: int) -> float:
     tracked = _tracked(fitter)
     if not tracked:
         return 0.0
+    return beginning(fitter, contender) - _sampled(fitter, contender, seed, tracked, 1)[0][0]
+
+
+def beginning(fitter: Fitter, contender: Contender) -> float:
+    """Return the objective of a contender over the beginnings of the trials, against the noise of the moment.
+
+    0 where there are no tracks.
+
+    Parameters
+    ----------
+    fitter
+        Of the dataset.
+    contender
+        One or two effects.
+    """
+    tracked = _tracked(fitter)
+    if not tracked:
+        return 0.0
     assert contender.fit is not None
-    hypothesis = contender.fit.hypothesis
-    here = fitter.residuals(hypothesis, [contender.point], tracked, _STAGES[0])[0]
-    return fitter.cost(here, contender.point, tracked) - _sampled(fitter, contender, seed, tracked, 1)[0][0]
+    here = fitter.residuals(contender.fit.hypothesis, [contender.point], tracked, _STAGES[0])[0]
+    return fitter.cost(here, contender.point, tracked)
 
 
 def _tracked(fitter: Fitter) -> tuple[int, ...]:

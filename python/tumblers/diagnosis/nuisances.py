@@ -38,6 +38,9 @@ Floats = NDArray[np.float64]
 _AT_END = 0.99
 # From this share of its tolerance on a nuisance has been moved by what was measured.
 _TELLS = 1e-3
+# A mean over trials that is farther from zero than so many of its standard deviations is no chance. A choice: of a
+# hundred sensors within their tolerances one or two have such a clock.
+_NO_CHANCE = 2.5
 # A nominal number is not off by more than so many tolerances.
 _MOST_OFF = 3.0
 # A tolerance is two standard deviations; a clock's offset is uniform within it.
@@ -104,9 +107,11 @@ class NuisanceFit:
         self.shared_sigmas = np.concatenate([np.maximum(_CAMERA_SIGMA * camera, 1e-12), np.ones(SHARED)])
 
     def enough(self, local: Floats) -> set[Nuisance]:
-        """Return the nuisances of the trials whose tolerances are enough, most trials' not being at an end.
+        """Return the nuisances of the trials whose tolerances are enough.
 
-        Of a single trial they always are: nothing else tells a late clock from a slow robot.
+        They are not where most trials are at an end, nor where one is and all together are off to one side: what is
+        off by as much in every trial brings only those to an end whose own share adds to it. Of a single trial they
+        always are: nothing else tells a late clock from a slow robot.
 
         Parameters
         ----------
@@ -114,11 +119,15 @@ class NuisanceFit:
             Clock (s) and origin (m) by trial as they were fitted, shape (trials, 3).
         """
         # At either one: where the truth is far, a motion that repeats has its best now at this end, now at that.
-        ends = self._at_end(local)[self.tracked]
+        ends = self._at_end(local)[self.tracked].sum(axis=0)
         # A robot at rest says nothing of the clock, which stays where it was.
         tells = (np.abs(local) > _TELLS * self.local_bounds)[self.tracked] | (self.local_bounds == 0.0)[self.tracked]
-        counts = zip(get_args(Nuisance), ends.sum(axis=0), tells.sum(axis=0), strict=True)
-        return {name for name, end, told in counts if end <= max(0.5 * told, 1)}
+        told = tells.sum(axis=0)
+        # The sum of what n trials ask for is off by chance by √n standard deviations.
+        off = np.abs(np.sum(np.where(tells, (local / self.local_sigmas)[self.tracked], 0.0), axis=0))
+        aside = (ends > 0) & (told > 1) & (off > _NO_CHANCE * np.sqrt(told))
+        most = ends > np.maximum(0.5 * told, 1.0)
+        return {name for name, lacking in zip(get_args(Nuisance), most | aside, strict=True) if not lacking}
 
     def at_tolerance(self, local: Floats) -> list[tuple[Nuisance, ...]]:
         """Return by trial the nuisances that were fitted to the end of their tolerances.

@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from ..effects.base import Effect
 from ..progress import OnPhase
-from .beginnings import MANY, from_beginnings, promise
+from .beginnings import MANY, beginning, from_beginnings, promise
 from .contender import Contender, likeliest, likeliest_first, of_fit, of_nominal
+from .counterpart import counterparts
 from .fit import Fitter
 from .hypothesis import Hypothesis
 from .least import least
@@ -25,6 +26,7 @@ from .own_noise import (
     IDLE_POINTS,
     POLISH_POINTS,
     again,
+    against_itself,
     against_the_best,
     each_by_itself,
     settled,
@@ -60,6 +62,9 @@ _FIRSTS = 2
 _SHAKEN, _SHAKEN_FITS, _SHAKEN_POINTS, _SHAKES = 3, 2, 3, 2
 # Pairs whose beginnings are searched, and singles for which one of the best pair is exchanged.
 _PAIRS_REFINED, _EXCHANGED = 2, 6
+# Other effects that are fitted from where they do what one of the best does, and how often the best may change by it;
+# they leave no more than this share of what the best takes off the nominal model's objective.
+_COUNTERPARTS, _EXCHANGES, _AS_GOOD = 3, 2, 0.5
 
 
 class Search:
@@ -123,10 +128,12 @@ class Search:
             untried = near[0].total > worth
             if far[0].total <= worth and (untried or near[0].total - far[0].total > more):
                 pairs = self._pairs(singles, strong, pairs)
+        elif strong and not (pairs and pairs[0].total < singles[0].total - self.worth):
+            singles = settled(self.fitter, self._alike(singles, refined), self.tell)
         if pairs and singles[0].total <= worth:
             pairs = likeliest_first([self._shaken(pairs[0]), *pairs[1:]])
             singles = [self._nested(pairs[0], singles[0]), *singles[1:]]
-        return self._concluded(nominal, likeliest_first([*singles, *pairs]))
+        return self._concluded(nominal, self._with_counterparts(nominal, likeliest_first([*singles, *pairs])))
 
     def in_steps_of(self, leader: Contender, contenders: Sequence[Contender]) -> list[Contender]:
         """Return the nominal model and the others again, in steps that are short enough for one of them.
@@ -174,6 +181,59 @@ class Search:
             if many or (k in promising and promises[k] > CLEAR):
                 made[k] = from_beginnings(self.fitter, contender, self.possible, self.seed)
         return likeliest_first(made)
+
+    def _alike(self, singles: Sequence[Contender], refined: Collection[tuple[str, ...]]) -> list[Contender]:
+        """Search far away for effects of one parameter too where another leaves no gap: one of them may be the cause.
+
+        Those are fitted that follow the beginnings of the trials about as well.
+        """
+        made, best = list(singles), singles[0]
+        self.tell("what else does the same", 0, 1)
+        self.fitter.take_likeliest_noise(best.effects)
+        goal = beginning(self.fitter, best)
+        for k, contender in enumerate(made):
+            if k == 0 or contender.free > 1 or contender.names in refined:
+                continue
+            here = beginning(self.fitter, contender)
+            there = here - promise(self.fitter, contender, self.seed)
+            if there < min(here - CLEAR, goal + _AS_GOOD * (here - goal)):
+                made[k] = from_beginnings(self.fitter, contender, self.possible, self.seed)
+                self.fitter.take_likeliest_noise(best.effects)
+        return likeliest_first(made)
+
+    def _with_counterparts(self, nominal: Contender, contenders: Sequence[Contender]) -> list[Contender]:
+        """Fit other effects from where they do what the best, or one of the best pair, does."""
+        made = {frozenset(contender.names): contender for contender in contenders}
+        for k in range(_EXCHANGES):
+            self.tell("what else does the same", k, _EXCHANGES)
+            best = likeliest(made.values())
+            if not self._found_counterparts(nominal, best, made) or likeliest(made.values()) is best:
+                break
+        return likeliest_first(made.values())
+
+    def _found_counterparts(self, nominal: Contender, best: Contender, made: dict[frozenset[str], Contender]) -> bool:
+        """Keep the counterparts of the best that are better than what is known of the same effects."""
+        assert best.fit is not None
+        found = False
+        for kind in best.fit.hypothesis.kinds:
+            self.fitter.take_likeliest_noise(best.effects)
+            worst = best.cost + _AS_GOOD * max(nominal.cost - best.cost, 0.0)
+            those = [c for c in counterparts(self.fitter, best, kind, self.possible) if c.cost < worst]
+            for counterpart in those[:_COUNTERPARTS]:
+                self.fitter.take_likeliest_noise(best.effects)
+                fit = self.fitter.fit(counterpart.hypothesis, counterpart.point, evaluations=_POINTS)
+                known = made.get(frozenset(fit.hypothesis.names))
+                if known is None or known.fit is None:
+                    other = of_fit(self.fitter, fit)
+                elif fit.cost > self.fitter.again(known.fit).cost - ENOUGH:
+                    continue
+                else:
+                    known = known if known.settled else against_itself(self.fitter, known.fit)
+                    other = settled_at(self.fitter, fit.hypothesis, fit.point, IDLE_POINTS, fit.steps)
+                    if other.total > known.total - ENOUGH:
+                        continue
+                made[frozenset(other.names)], found = other, True
+        return found
 
     def _nested(self, pair: Contender, single: Contender) -> Contender:
         """Fit the best single effect again from where it is in a pair: alone it must not have been fitted less far."""

@@ -1,0 +1,141 @@
+"""`counterparts`: the points at which other effects do what one effect does.
+
+Where an effect is strong, another that does the same has its best in a narrow valley far from neutral, which points
+over the range miss. But what the first does is known, also at a share s of its strength, where both are linear: with r
+the whitened differences, R what else is at work, and J the derivatives by the other's parameters q at neutral,
+
+```text
+t_s = r(R + s E) - r(R),      q_s = argmin_q |t_s - s J q|²
+```
+
+is about where the other does what the first does (Gauss and Newton's step from neutral, towards another model's motion
+and not towards the data).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..effects.base import Effect
+from .contender import Contender
+from .fit import Fitter
+from .hypothesis import Hypothesis
+
+__all__ = ["Counterpart", "counterparts"]
+
+Floats = NDArray[np.float64]
+
+# Shares of the effect's strength: thresholds show only in the greater ones, and the least is the most linear.
+_SHARES = (0.05, 0.25, 1.0)
+# Of the first derivatives, in u; of effects with more parameters than this a line to a point tells nothing.
+_STEP, _MANY = 1e-2, 5
+# Where the other explains less of what the first does, it is no counterpart.
+_EXPLAINED = 0.5
+
+
+class Counterpart(NamedTuple):
+    """Another effect in the place of one.
+
+    Attributes
+    ----------
+    cost
+        The objective there, against the noise around what has the one.
+    hypothesis
+        What else is at work, and the other.
+    point
+        As u, shape (p,).
+    """
+
+    cost: float
+    hypothesis: Hypothesis
+    point: Floats
+
+
+def counterparts(
+    fitter: Fitter, contender: Contender, kind: type[Effect], possible: Sequence[Hypothesis]
+) -> list[Counterpart]:
+    """Return the effects that do about what one effect of a contender does, the likeliest first.
+
+    The noise is taken around the contender, and stays.
+
+    Parameters
+    ----------
+    fitter
+        Of the dataset.
+    contender
+        One or two effects.
+    kind
+        The one of them that is exchanged.
+    possible
+        Every effect by itself.
+    """
+    assert contender.fit is not None
+    whole, point = contender.fit.hypothesis, contender.point
+    mine = np.array([name == kind.name for name, _ in whole.keys])
+    rest = [h for h in possible if h.names[0] in contender.names and h.kinds != (kind,)]
+    others = [h for h in possible if h.names[0] not in contender.names and h.free <= _MANY]
+    fitter.take_likeliest_noise(contender.effects)
+    shares = [np.where(mine, share * point, point) for share in (0.0, *_SHARES)]
+    still, *moved = fitter.residuals(whole, shares)
+    weights = fitter.weights(moved[-1], fitter.trials)
+    here = weights * still.over(fitter.trials)
+    wanted = [weights * residual.over(fitter.trials) - here for residual in moved]
+    found = []
+    for other in others:
+        hypothesis = rest[0] + other if rest else other
+        base = np.concatenate([point[~mine], np.zeros(len(other.neutral))])
+        guesses = _guesses(fitter, hypothesis, base, len(other.neutral), weights, here, wanted)
+        costs = [fitter.cost(r, p) for r, p in zip(fitter.residuals(hypothesis, guesses), guesses, strict=True)]
+        if costs:
+            best = int(np.argmin(costs))
+            found.append(Counterpart(costs[best], hypothesis, guesses[best]))
+    return sorted(found, key=lambda counterpart: counterpart.cost)
+
+
+def _guesses(
+    fitter: Fitter,
+    hypothesis: Hypothesis,
+    base: Floats,
+    count: int,
+    weights: Floats,
+    here: Floats,
+    wanted: Sequence[Floats],
+) -> list[Floats]:
+    """Return by share where the last parameters do what is wanted, where they can.
+
+    Parameters
+    ----------
+    fitter, hypothesis
+        What is simulated.
+    base
+        The point from which the last `count` parameters move, shape (p,).
+    count
+        How many move.
+    weights
+        Of the differences, shape (n,).
+    here
+        Weighted differences at the base, shape (n,).
+    wanted
+        By share, what the first effect changes, shape (n,).
+    """
+    last = np.arange(len(base) - count, len(base))
+    free = [int(j) for j in last if hypothesis.high[j] > hypothesis.low[j]]
+    signed = [_STEP if hypothesis.high[j] >= -hypothesis.low[j] else -_STEP for j in free]
+    points = [base + h * np.eye(len(base))[j] for h, j in zip(signed, free, strict=True)]
+    changed = fitter.residuals(hypothesis, points)
+    table = np.column_stack(
+        [(weights * r.over(fitter.trials) - here) / h for r, h in zip(changed, signed, strict=True)]
+    )
+    made = []
+    for share, target in zip(_SHARES, wanted, strict=True):
+        moves = np.linalg.lstsq(table, target, rcond=1e-6)[0]
+        left = float(np.sum((target - table @ moves) ** 2))
+        if left < (1.0 - _EXPLAINED) * float(np.sum(target**2)):
+            guess = base.copy()
+            guess[free] += moves / share
+            made.append(np.clip(guess, hypothesis.low, hypothesis.high))
+    return made

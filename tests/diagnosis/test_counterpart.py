@@ -1,0 +1,108 @@
+"""Where another effect does what one does, and that a search asks for it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.contender import Contender, likeliest, of_fit, of_nominal
+from tumblers.diagnosis.counterpart import counterparts
+from tumblers.diagnosis.fit import Fitter
+from tumblers.diagnosis.own_noise import settled_at
+from tumblers.diagnosis.search import Search
+from tumblers.diagnosis.simulator import Simulator
+from tumblers.effects.base import Effect
+from tumblers.effects.camera_calibration import CameraCalibration
+from tumblers.effects.friction_anisotropy import FrictionAnisotropy
+from tumblers.effects.friction_coefficient import FrictionCoefficient
+from tumblers.effects.size_error import SizeError
+from tumblers.effects.stray_field_gradient import StrayFieldGradient
+from tumblers.effects.substrate_tilt import SubstrateTilt
+from tumblers.field import StaticField
+
+from .lab import PLANS, measure, plan
+
+KINDS: list[type[Effect]] = [SubstrateTilt, StrayFieldGradient, SizeError, CameraCalibration, FrictionCoefficient]
+
+
+def quiet(_phase: str, _done: int, _total: int) -> None:
+    """Tell nobody."""
+
+
+def _at(search: Search, *effects: Effect) -> Contender:
+    """Return effects as they are as a contender."""
+    first, *more = [next(h for h in search.possible if h.kinds == (type(effect),)) for effect in effects]
+    hypothesis = sum(more, start=first)
+    values = np.concatenate([effect.to_fit(effect.vector()) for effect in effects])
+    return settled_at(search.fitter, hypothesis, (values - hypothesis.neutral) / hypothesis.scale)
+
+
+def _search(truth: tuple[Effect, ...], kinds: list[type[Effect]]) -> Search:
+    dataset = measure(plan(PLANS[:2]), truth, seed=3)
+    return Search(Fitter(Comparison(dataset, Simulator(dataset))), kinds, quiet, 0)
+
+
+def test_a_tilt_has_its_counterpart_in_a_gradient_that_pulls_as_gravity_does() -> None:
+    tilt = SubstrateTilt(slope_y_deg=6.0)
+    search = _search((tilt,), KINDS)
+    best = _at(search, tilt)
+    found = counterparts(search.fitter, best, SubstrateTilt, search.possible)
+    assert found[0].hypothesis.names == ("stray_field_gradient",)
+    (gradient,) = found[0].hypothesis.effects(found[0].point)
+    assert isinstance(gradient, StrayFieldGradient)
+    robot = search.comparison.simulator.nominal(0).robot
+    pull = robot.total_mass_kg * search.comparison.dataset.trials[0].gravity_m_per_s2 * np.sin(np.radians(6.0))
+    # Along the slope, as gravity: the sign is the tilt's, which lowers +y where it is positive or raises it.
+    assert abs(gradient.gradient_T_per_m[1]) == pytest.approx(
+        pull / np.linalg.norm(robot.magnetic_moment_A_m2), rel=0.2
+    )
+    # It takes most of what the tilt takes off the nominal model's objective.
+    nominal = of_nominal(search.fitter).cost
+    assert nominal - found[0].cost > 0.7 * (nominal - best.cost) > 100.0
+
+
+def test_one_of_a_pair_is_exchanged_while_the_other_stays() -> None:
+    truth = (SizeError(length_factor=1.05), SubstrateTilt(slope_y_deg=6.0))
+    search = _search(truth, KINDS)
+    best = _at(search, *truth)
+    found = counterparts(search.fitter, best, SubstrateTilt, search.possible)
+    assert found[0].hypothesis.names == ("size_error", "stray_field_gradient")
+    assert found[0].point[0] == best.point[0]
+    assert all("substrate_tilt" not in counterpart.hypothesis.names for counterpart in found)
+    assert all(counterpart.hypothesis.names[0] == "size_error" for counterpart in found)
+
+
+def test_a_search_keeps_what_does_the_same_better_than_the_best_does() -> None:
+    truth = StrayFieldGradient(gradient_T_per_m=(0.0, 0.1, 0.0))
+    search = _search((truth,), KINDS)
+    nominal = of_nominal(search.fitter)
+    tilt, gradient = _at(search, SubstrateTilt(slope_y_deg=-6.7)), _at(search, truth)
+    assert gradient.fit is not None
+    # As a search leaves it that went astray.
+    idle = of_fit(search.fitter, search.fitter.again(replace(gradient.fit, point=0.02 * gradient.point)))
+    made = search._with_counterparts(nominal, [tilt, idle])
+    gradient = next(contender for contender in made if contender.names == ("stray_field_gradient",))
+    assert idle.total > tilt.total
+    assert gradient.total < idle.total - 150.0
+    assert made[0] is likeliest(made)
+
+
+def test_an_effect_of_one_parameter_is_looked_for_far_away_though_another_leaves_no_gap() -> None:
+    off = StaticField(strength_T=0.0, direction=(0.0, 1.0, 0.0))
+    truth = FrictionCoefficient(factor=0.5)
+    dataset = measure(plan((*PLANS[:2], PLANS[3], ("lying", off, 35.0))), (truth,), seed=3)
+    search = Search(
+        Fitter(Comparison(dataset, Simulator(dataset))), [FrictionAnisotropy, FrictionCoefficient], quiet, 0
+    )
+    best = _at(search, FrictionAnisotropy(e_t_factor=0.5, e_o_factor=0.5))
+    hypothesis = next(h for h in search.possible if h.names == ("friction_coefficient",))
+    search.fitter.take_likeliest_noise(())
+    idle = of_fit(search.fitter, search.fitter.fit(hypothesis, np.zeros(1), evaluations=1))
+    made = search._alike([best, idle], set())
+    friction = next(contender for contender in made if contender.names == ("friction_coefficient",))
+    (effect,) = friction.effects
+    assert isinstance(effect, FrictionCoefficient)
+    assert effect.factor == pytest.approx(0.5, rel=0.05)
