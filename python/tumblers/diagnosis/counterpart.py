@@ -24,6 +24,7 @@ from ..effects.base import Effect
 from .contender import Contender
 from .fit import Fitter
 from .hypothesis import Hypothesis
+from .step_credit import step_credit
 
 __all__ = ["Counterpart", "counterparts"]
 
@@ -32,7 +33,7 @@ Floats = NDArray[np.float64]
 # Shares of the effect's strength: thresholds show only in the greater ones, and the least is the most linear.
 _SHARES = (0.05, 0.25, 1.0)
 # Of the first derivatives, in u; of effects with more parameters than this a line to a point tells nothing.
-_STEP, _MANY = 1e-2, 5
+_STEP, _MOST_FREE = 1e-2, 5
 # Where the other explains less of what the first does, it is no counterpart.
 _EXPLAINED = 0.5
 
@@ -43,7 +44,7 @@ class Counterpart(NamedTuple):
     Attributes
     ----------
     cost
-        The objective there, against the noise around what has the one.
+        The objective there, against the noise around what has the one, without credit for its step.
     hypothesis
         What else is at work, and the other.
     point
@@ -77,7 +78,7 @@ def counterparts(
     whole, point = contender.fit.hypothesis, contender.point
     mine = np.array([name == kind.name for name, _ in whole.keys])
     rest = [h for h in possible if h.names[0] in contender.names and h.kinds != (kind,)]
-    others = [h for h in possible if h.names[0] not in contender.names and h.free <= _MANY]
+    others = [h for h in possible if h.names[0] not in contender.names and 0 < h.free <= _MOST_FREE]
     fitter.take_likeliest_noise(contender.effects)
     shares = [np.where(mine, share * point, point) for share in (0.0, *_SHARES)]
     still, *moved = fitter.residuals(whole, shares)
@@ -89,7 +90,10 @@ def counterparts(
         hypothesis = rest[0] + other if rest else other
         base = np.concatenate([point[~mine], np.zeros(len(other.neutral))])
         guesses = _guesses(fitter, hypothesis, base, len(other.neutral), weights, here, wanted)
-        costs = [fitter.cost(r, p) for r, p in zip(fitter.residuals(hypothesis, guesses), guesses, strict=True)]
+        costs = [
+            fitter.cost(r, p) + step_credit(fitter, hypothesis.effects(p))
+            for r, p in zip(fitter.residuals(hypothesis, guesses), guesses, strict=True)
+        ]
         if costs:
             best = int(np.argmin(costs))
             found.append(Counterpart(costs[best], hypothesis, guesses[best]))

@@ -28,6 +28,7 @@ from .own_noise import (
     again,
     against_itself,
     against_the_best,
+    by_itself,
     each_by_itself,
     settled,
     settled_at,
@@ -62,9 +63,9 @@ _FIRSTS = 2
 _SHAKEN, _SHAKEN_FITS, _SHAKEN_POINTS, _SHAKES = 3, 2, 3, 2
 # Pairs whose beginnings are searched, and singles for which one of the best pair is exchanged.
 _PAIRS_REFINED, _EXCHANGED = 2, 6
-# Other effects that are fitted from where they do what one of the best does, and how often the best may change by it;
-# they leave no more than this share of what the best takes off the nominal model's objective.
-_COUNTERPARTS, _EXCHANGES, _AS_GOOD = 3, 2, 0.5
+# Another effect is fitted that, by the beginnings or from where it does what the best does, leaves no more than this
+# share of the objective that the best takes off; how many from there, and how often the best may change by it.
+_AS_GOOD, _COUNTERPARTS, _ROUNDS = 0.5, 3, 2
 
 
 class Search:
@@ -129,11 +130,14 @@ class Search:
             if far[0].total <= worth and (untried or near[0].total - far[0].total > more):
                 pairs = self._pairs(singles, strong, pairs)
         elif strong and not (pairs and pairs[0].total < singles[0].total - self.worth):
-            singles = settled(self.fitter, self._alike(singles, refined), self.tell)
+            singles = settled(self.fitter, self._elsewhere(singles, refined), self.tell)
         if pairs and singles[0].total <= worth:
             pairs = likeliest_first([self._shaken(pairs[0]), *pairs[1:]])
             singles = [self._nested(pairs[0], singles[0]), *singles[1:]]
-        return self._concluded(nominal, self._with_counterparts(nominal, likeliest_first([*singles, *pairs])))
+        made = likeliest_first([*singles, *pairs])
+        if strong and made[0].total <= worth:
+            made = self._with_counterparts(made)
+        return self._concluded(nominal, made)
 
     def in_steps_of(self, leader: Contender, contenders: Sequence[Contender]) -> list[Contender]:
         """Return the nominal model and the others again, in steps that are short enough for one of them.
@@ -182,13 +186,13 @@ class Search:
                 made[k] = from_beginnings(self.fitter, contender, self.possible, self.seed)
         return likeliest_first(made)
 
-    def _alike(self, singles: Sequence[Contender], refined: Collection[tuple[str, ...]]) -> list[Contender]:
+    def _elsewhere(self, singles: Sequence[Contender], refined: Collection[tuple[str, ...]]) -> list[Contender]:
         """Search far away for effects of one parameter too where another leaves no gap: one of them may be the cause.
 
         Those are fitted that follow the beginnings of the trials about as well.
         """
         made, best = list(singles), singles[0]
-        self.tell("what else does the same", 0, 1)
+        self.tell("points over the whole range", 0, 1)
         self.fitter.take_likeliest_noise(best.effects)
         goal = beginning(self.fitter, best)
         for k, contender in enumerate(made):
@@ -197,42 +201,47 @@ class Search:
             here = beginning(self.fitter, contender)
             there = here - promise(self.fitter, contender, self.seed)
             if there < min(here - CLEAR, goal + _AS_GOOD * (here - goal)):
-                made[k] = from_beginnings(self.fitter, contender, self.possible, self.seed)
+                other = from_beginnings(self.fitter, contender, self.possible, self.seed)
+                made[k] = by_itself(self.fitter, other, IDLE_POINTS)
                 self.fitter.take_likeliest_noise(best.effects)
         return likeliest_first(made)
 
-    def _with_counterparts(self, nominal: Contender, contenders: Sequence[Contender]) -> list[Contender]:
-        """Fit other effects from where they do what the best, or one of the best pair, does."""
+    def _with_counterparts(self, contenders: Sequence[Contender]) -> list[Contender]:
+        """Fit other effects from where they do what the best, or one of the best pair, does.
+
+        A pair may lead that adds less than a second effect must: where the best single effect leaves no gap, it is the
+        one that others have to do the same as.
+        """
         made = {frozenset(contender.names): contender for contender in contenders}
-        for k in range(_EXCHANGES):
-            self.tell("what else does the same", k, _EXCHANGES)
-            best = likeliest(made.values())
-            if not self._found_counterparts(nominal, best, made) or likeliest(made.values()) is best:
+        for k in range(_ROUNDS):
+            self.tell("what else does the same", k, _ROUNDS)
+            best, single = likeliest(made.values()), likeliest(c for c in made.values() if len(c.names) == 1)
+            asked = [best] if best is single or self._is_wanting(single) else [best, single]
+            found = [self._found_counterparts(contender, made) for contender in asked]
+            if not any(found) or likeliest(made.values()) is best:
                 break
         return likeliest_first(made.values())
 
-    def _found_counterparts(self, nominal: Contender, best: Contender, made: dict[frozenset[str], Contender]) -> bool:
-        """Keep the counterparts of the best that are better than what is known of the same effects."""
+    def _found_counterparts(self, best: Contender, made: dict[frozenset[str], Contender]) -> bool:
+        """Keep the counterparts of a contender that are better than what is known of the same effects."""
         assert best.fit is not None
         found = False
         for kind in best.fit.hypothesis.kinds:
-            self.fitter.take_likeliest_noise(best.effects)
-            worst = best.cost + _AS_GOOD * max(nominal.cost - best.cost, 0.0)
-            those = [c for c in counterparts(self.fitter, best, kind, self.possible) if c.cost < worst]
-            for counterpart in those[:_COUNTERPARTS]:
+            those = counterparts(self.fitter, best, kind, self.possible)
+            # All against the noise around the contender.
+            nominal, here = self.fitter.nominal()[1], self.fitter.again(best.fit).cost + best.step_credit
+            worst = here + _AS_GOOD * max(nominal - here, 0.0)
+            for counterpart in [c for c in those if c.cost < worst][:_COUNTERPARTS]:
                 self.fitter.take_likeliest_noise(best.effects)
                 fit = self.fitter.fit(counterpart.hypothesis, counterpart.point, evaluations=_POINTS)
                 known = made.get(frozenset(fit.hypothesis.names))
-                if known is None or known.fit is None:
-                    other = of_fit(self.fitter, fit)
-                elif fit.cost > self.fitter.again(known.fit).cost - ENOUGH:
-                    continue
-                else:
-                    known = known if known.settled else against_itself(self.fitter, known.fit)
-                    other = settled_at(self.fitter, fit.hypothesis, fit.point, IDLE_POINTS, fit.steps)
-                    if other.total > known.total - ENOUGH:
+                if known is not None and known.fit is not None:
+                    if fit.cost > self.fitter.again(known.fit).cost - ENOUGH:
                         continue
-                made[frozenset(other.names)], found = other, True
+                    known = known if known.settled else against_itself(self.fitter, known.fit)
+                other = settled_at(self.fitter, fit.hypothesis, fit.point, IDLE_POINTS, fit.steps)
+                if known is None or other.total < known.total - ENOUGH:
+                    made[frozenset(other.names)], found = other, True
         return found
 
     def _nested(self, pair: Contender, single: Contender) -> Contender:
