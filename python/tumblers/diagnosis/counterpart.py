@@ -32,9 +32,9 @@ Floats = NDArray[np.float64]
 
 # Shares of the effect's strength: thresholds show only in the greater ones, and the least is the most linear.
 _SHARES = (0.05, 0.25, 1.0)
-# Of the first derivatives, in u; of effects with more parameters than this a line to a point tells nothing.
+# Of the first derivatives, in u; an effect of more parameters than this does a part of almost anything.
 _STEP, _MOST_FREE = 1e-2, 5
-# Where the other explains less of what the first does, it is no counterpart.
+# Where the other explains less of what the first does (of its sum of squares), it is no counterpart. A choice.
 _EXPLAINED = 0.5
 
 

@@ -39,7 +39,7 @@ _AT_END = 0.99
 # From this share of its tolerance on a nuisance has been moved by what was measured.
 _TELLS = 1e-3
 # A mean over trials that is farther from zero than so many of its standard deviations is no chance. A choice: of a
-# hundred sensors within their tolerances one or two have such a clock.
+# hundred sensors within their tolerances one or two have such a clock, where the nominal model is right.
 _NO_CHANCE = 2.5
 # A nominal number is not off by more than so many tolerances.
 _MOST_OFF = 3.0

@@ -17,7 +17,7 @@ from ..progress import OnPhase
 from .beginnings import MANY, beginning, from_beginnings, promise
 from .contender import Contender, likeliest, likeliest_first, of_fit, of_nominal
 from .counterpart import counterparts
-from .fit import Fitter
+from .fit import Fit, Fitter
 from .hypothesis import Hypothesis
 from .least import least
 from .nearby import points_around
@@ -198,9 +198,8 @@ class Search:
         for k, contender in enumerate(made):
             if k == 0 or contender.free > 1 or contender.names in refined:
                 continue
-            here = beginning(self.fitter, contender)
-            there = here - promise(self.fitter, contender, self.seed)
-            if there < min(here - CLEAR, goal + _AS_GOOD * (here - goal)):
+            wanted = (1.0 - _AS_GOOD) * (beginning(self.fitter, contender) - goal)
+            if promise(self.fitter, contender, self.seed) > max(CLEAR, wanted):
                 other = from_beginnings(self.fitter, contender, self.possible, self.seed)
                 made[k] = by_itself(self.fitter, other, IDLE_POINTS)
                 self.fitter.take_likeliest_noise(best.effects)
@@ -216,33 +215,34 @@ class Search:
         for k in range(_ROUNDS):
             self.tell("what else does the same", k, _ROUNDS)
             best, single = likeliest(made.values()), likeliest(c for c in made.values() if len(c.names) == 1)
-            asked = [best] if best is single or self._is_wanting(single) else [best, single]
-            found = [self._found_counterparts(contender, made) for contender in asked]
-            if not any(found) or likeliest(made.values()) is best:
+            for contender in [best] if best is single or self._is_wanting(single) else [best, single]:
+                self._add_counterparts(contender, made)
+            if likeliest(made.values()) is best:
                 break
         return likeliest_first(made.values())
 
-    def _found_counterparts(self, best: Contender, made: dict[frozenset[str], Contender]) -> bool:
+    def _add_counterparts(self, best: Contender, made: dict[frozenset[str], Contender]) -> None:
         """Keep the counterparts of a contender that are better than what is known of the same effects."""
         assert best.fit is not None
-        found = False
         for kind in best.fit.hypothesis.kinds:
             those = counterparts(self.fitter, best, kind, self.possible)
             # All against the noise around the contender.
             nominal, here = self.fitter.nominal()[1], self.fitter.again(best.fit).cost + best.step_credit
             worst = here + _AS_GOOD * max(nominal - here, 0.0)
-            for counterpart in [c for c in those if c.cost < worst][:_COUNTERPARTS]:
-                self.fitter.take_likeliest_noise(best.effects)
-                fit = self.fitter.fit(counterpart.hypothesis, counterpart.point, evaluations=_POINTS)
-                known = made.get(frozenset(fit.hypothesis.names))
-                if known is not None and known.fit is not None:
-                    if fit.cost > self.fitter.again(known.fit).cost - ENOUGH:
-                        continue
-                    known = known if known.settled else against_itself(self.fitter, known.fit)
+            near = [c for c in those if c.cost < worst][:_COUNTERPARTS]
+            fits = [self.fitter.fit(c.hypothesis, c.point, evaluations=_POINTS) for c in near]
+            for fit in [fit for fit in fits if self._is_better(fit, made.get(frozenset(fit.hypothesis.names)))]:
+                # Each against its own.
                 other = settled_at(self.fitter, fit.hypothesis, fit.point, IDLE_POINTS, fit.steps)
+                known = made.get(frozenset(other.names))
+                if known is not None and known.fit is not None and not known.settled:
+                    known = against_itself(self.fitter, known.fit)
                 if known is None or other.total < known.total - ENOUGH:
-                    made[frozenset(other.names)], found = other, True
-        return found
+                    made[frozenset(other.names)] = other
+
+    def _is_better(self, fit: Fit, known: Contender | None) -> bool:
+        """Return whether a fit is better than what is known of the same effects, against the noise of the moment."""
+        return known is None or known.fit is None or fit.cost <= self.fitter.again(known.fit).cost - ENOUGH
 
     def _nested(self, pair: Contender, single: Contender) -> Contender:
         """Fit the best single effect again from where it is in a pair: alone it must not have been fitted less far."""
