@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,6 +14,7 @@ from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.contender import Contender, of_fit, of_nominal
 from tumblers.diagnosis.counterpart import counterparts
 from tumblers.diagnosis.fit import Fitter
+from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.own_noise import settled_at
 from tumblers.diagnosis.search import Search
 from tumblers.diagnosis.simulator import Simulator
@@ -41,14 +44,14 @@ def _at(search: Search, *effects: Effect) -> Contender:
     return settled_at(search.fitter, hypothesis, (values - hypothesis.neutral) / hypothesis.scale)
 
 
-def _search(truth: tuple[Effect, ...], kinds: list[type[Effect]]) -> Search:
+def _search(*truth: Effect) -> Search:
     dataset = measure(plan(PLANS[:2]), truth, seed=3)
-    return Search(Fitter(Comparison(dataset, Simulator(dataset))), kinds, quiet, 0)
+    return Search(Fitter(Comparison(dataset, Simulator(dataset))), KINDS, quiet, 0)
 
 
 def test_a_tilt_has_its_counterpart_in_a_gradient_that_pulls_as_gravity_does() -> None:
     tilt = SubstrateTilt(slope_y_deg=6.0)
-    search = _search((tilt,), KINDS)
+    search = _search(tilt)
     best = _at(search, tilt)
     found = counterparts(search.fitter, best, SubstrateTilt, search.possible)
     assert found[0].hypothesis.names == ("stray_field_gradient",)
@@ -56,9 +59,9 @@ def test_a_tilt_has_its_counterpart_in_a_gradient_that_pulls_as_gravity_does() -
     assert isinstance(gradient, StrayFieldGradient)
     robot = search.comparison.simulator.nominal(0).robot
     pull = robot.total_mass_kg * search.comparison.dataset.trials[0].gravity_m_per_s2 * np.sin(np.radians(6.0))
-    # A positive slope raises +y.
+    # A positive slope raises +y. One linear step from neutral: of four draws of the noise all were within 4 %.
     moment = np.linalg.norm(robot.magnetic_moment_A_m2)
-    assert gradient.gradient_T_per_m[1] == pytest.approx(-pull / moment, rel=0.2)
+    assert gradient.gradient_T_per_m[1] == pytest.approx(-pull / moment, rel=0.1)
     # It takes most of what the tilt takes off the nominal model's objective.
     nominal = of_nominal(search.fitter).cost
     assert nominal - found[0].cost > 0.7 * (nominal - best.cost) > 100.0
@@ -66,7 +69,7 @@ def test_a_tilt_has_its_counterpart_in_a_gradient_that_pulls_as_gravity_does() -
 
 def test_one_of_a_pair_is_exchanged_while_the_other_stays() -> None:
     truth = (SizeError(length_factor=1.1), SubstrateTilt(slope_y_deg=6.0))
-    search = _search(truth, KINDS)
+    search = _search(*truth)
     best = _at(search, *truth)
     found = counterparts(search.fitter, best, SubstrateTilt, search.possible)
     assert found[0].hypothesis.names == ("size_error", "stray_field_gradient")
@@ -75,15 +78,15 @@ def test_one_of_a_pair_is_exchanged_while_the_other_stays() -> None:
     assert all(counterpart.hypothesis.names[0] == "size_error" for counterpart in found)
     # The first of them: the parameters of the other come before it then.
     swapped = counterparts(search.fitter, best, SizeError, search.possible)
-    assert swapped[0].hypothesis.names == ("substrate_tilt", "camera_calibration")
-    assert_array_equal(swapped[0].point[:2], best.point[2:])
-    # A stride is length and height, 0.8 mm and 0.4 mm: a tenth of the length is 7 % of it, as if it were seen larger.
-    assert swapped[0].hypothesis.values(swapped[0].point)[2] == pytest.approx(1.067, abs=0.015)
+    assert swapped
+    for counterpart in swapped:
+        assert counterpart.hypothesis.names[0] == "substrate_tilt"
+        assert_array_equal(counterpart.point[:2], best.point[2:])
 
 
 def test_a_search_keeps_what_does_the_same_better_than_the_best_does() -> None:
     truth = StrayFieldGradient(gradient_T_per_m=(0.0, 0.1, 0.0))
-    search = _search((truth,), KINDS)
+    search = _search(truth)
     tilt, gradient = _at(search, SubstrateTilt(slope_y_deg=-6.7)), _at(search, truth)
     assert gradient.fit is not None
     # As a search leaves it that went astray.
@@ -92,6 +95,19 @@ def test_a_search_keeps_what_does_the_same_better_than_the_best_does() -> None:
     gradient = next(contender for contender in made if contender.names == ("stray_field_gradient",))
     assert idle.total > tilt.total
     assert gradient.total < idle.total - 150.0
+
+
+def test_a_search_asks_at_its_end_what_else_does_what_its_leader_does(monkeypatch: pytest.MonkeyPatch) -> None:
+    search, asked = _search(SubstrateTilt(slope_y_deg=6.0)), []
+
+    def spied(fitter: Fitter, contender: Contender, kind: type[Effect], possible: Sequence[Hypothesis]) -> Any:
+        asked.append((contender.names, kind.name))
+        return counterparts(fitter, contender, kind, possible)
+
+    monkeypatch.setattr("tumblers.diagnosis.search.counterparts", spied)
+    leader = next(c for c in search.contenders() if len(c.names) == 1)
+    assert leader.names == ("substrate_tilt",)
+    assert (leader.names, "substrate_tilt") in asked
 
 
 def test_an_effect_of_one_parameter_is_looked_for_far_away_though_another_leaves_no_gap() -> None:
@@ -105,6 +121,7 @@ def test_an_effect_of_one_parameter_is_looked_for_far_away_though_another_leaves
     hypothesis = next(h for h in search.possible if h.names == ("friction_coefficient",))
     search.fitter.take_likeliest_noise(())
     idle = of_fit(search.fitter, search.fitter.fit(hypothesis, np.zeros(1), evaluations=1))
+    assert idle.effects[0].vector()[0] > 0.9
     made = search._elsewhere([best, idle], set())
     friction = next(contender for contender in made if contender.names == ("friction_coefficient",))
     (effect,) = friction.effects
