@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -9,13 +10,13 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from tumblers.diagnosis.beginnings import from_beginnings, promise
+from tumblers.diagnosis.beginnings import from_beginnings, from_its_own_beginning, promise
 from tumblers.diagnosis.comparison import Comparison, Residual
-from tumblers.diagnosis.contender import of_fit, of_nominal
+from tumblers.diagnosis.contender import Contender, of_fit, of_nominal
 from tumblers.diagnosis.fit import Fitter
 from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.loss import FAR, robust_cost
-from tumblers.diagnosis.own_noise import against_itself, against_the_best, beside
+from tumblers.diagnosis.own_noise import against_itself, against_the_best, beside, settled_at
 from tumblers.diagnosis.pairs import Pairs, firsts
 from tumblers.diagnosis.search import Search
 from tumblers.diagnosis.simulator import LONGEST_STEP_S, Job, Simulator
@@ -36,6 +37,15 @@ from .lab import PLANS, measure, plan, rollouts_made
 OFF = StaticField(strength_T=0.0, direction=(0.0, 1.0, 0.0))
 # A robot that lies on a slope: it slides where friction is a quarter below the nominal one.
 LYING = (("lying", OFF, 50.0),)
+
+MANY_KINDS = (
+    "size_error",
+    "magnetization_misalignment",
+    "magnetization_strength",
+    "friction_coefficient",
+    "substrate_tilt",
+    "viscous_drag",
+)
 
 
 def quiet(_phase: str, _done: int, _total: int) -> None:
@@ -289,6 +299,50 @@ def test_the_wavelength_of_a_roughness_is_found_from_the_beginnings() -> None:
     assert isinstance(effect, SurfaceRoughness)
     assert effect.wavelength_m == pytest.approx(truth.wavelength_m, rel=0.02)
     assert_allclose(effect.sine_m, truth.sine_m, atol=5e-7)
+
+
+def test_a_wavelength_that_is_a_little_off_finds_its_way_over_the_beginnings_and_not_over_whole_trials() -> None:
+    truth = SurfaceRoughness(wavelength_m=1.5e-3, cosine_m=(0.0, 1e-6, 4e-6), sine_m=(0.0, -4e-6, -2e-6))
+    off = replace(truth, wavelength_m=1.02 * truth.wavelength_m)
+    dataset = measure(plan(PLANS[:2], duration_s=1.2), (truth,))
+    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
+    (hypothesis,) = Search(fitter, [SurfaceRoughness], quiet, 0).possible
+    start = (off.to_fit(off.vector()) - hypothesis.neutral) / hypothesis.scale
+    stuck = settled_at(fitter, hypothesis, start, evaluations=8)
+    found = from_its_own_beginning(fitter, stuck)
+    wavelengths = [
+        effect.wavelength_m for c in (stuck, found) for effect in c.effects if hasattr(effect, "wavelength_m")
+    ]
+    # The fit to whole trials stays where it started; the other ends at the truth, and with half of the objective.
+    assert wavelengths[0] == pytest.approx(off.wavelength_m, rel=0.005)
+    assert wavelengths[1] == pytest.approx(truth.wavelength_m, rel=0.005)
+    assert found.total < 0.7 * stuck.total
+
+
+@pytest.mark.parametrize("enough", [False, True])
+def test_more_firsts_are_tried_where_every_pair_leaves_a_gap(enough: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    truth = (SizeError(length_factor=1.2), MagnetizationStrength(factor=0.7))
+    dataset = measure(plan(PLANS[:1]), truth)
+    search = Search(Fitter(Comparison(dataset, Simulator(dataset))), [CATALOGUE[name] for name in MANY_KINDS], quiet, 0)
+    search.fitter.take_likeliest_noise(())
+    nominal = of_nominal(search.fitter)
+    # All as near to the best as a first has to be.
+    singles = [replace(single, cost=nominal.cost) for single in search._singles(nominal)]
+    tried: list[Contender] = []
+    add = Pairs.add
+
+    def spied(pairs: Pairs, first: Contender, others: Sequence[Contender]) -> None:
+        tried.append(first)
+        # One pair is enough to go on with.
+        if len(tried) == 1:
+            add(pairs, first, others)
+
+    monkeypatch.setattr(Pairs, "add", spied)
+    monkeypatch.setattr(search, "_is_enough", lambda _: enough)
+    monkeypatch.setattr(search, "_is_wanting", lambda _: True)
+    assert search._pairs(singles, strong=True)
+    # What is exchanged later is another contender of the same name.
+    assert [any(first is single for first in tried) for single in singles] == [True, True, *(3 * [not enough]), False]
 
 
 def test_an_effect_promises_something_where_it_is_not_yet_where_it_should_be() -> None:

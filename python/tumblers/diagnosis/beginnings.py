@@ -13,7 +13,7 @@ from .fit import Fitter
 from .hypothesis import Hypothesis
 from .least import least
 
-__all__ = ["MANY", "beginning", "from_beginnings", "promise"]
+__all__ = ["MANY", "beginning", "from_beginnings", "from_its_own_beginning", "promise"]
 
 Floats = NDArray[np.float64]
 
@@ -52,7 +52,34 @@ def from_beginnings(fitter: Fitter, contender: Contender, possible: Sequence[Hyp
     else:
         sampled = [point for _, point in _sampled(fitter, contender, seed, tracked, _BEST)]
         point = _staged(fitter, hypothesis, sampled, tracked)
-    fit = fitter.fit(hypothesis, point, evaluations=_LAST_POINTS)
+    return _fitted(fitter, contender, point)
+
+
+def from_its_own_beginning(fitter: Fitter, contender: Contender) -> Contender:
+    """Fit a contender again from where it is, the beginnings of the trials first, or return it where there are none.
+
+    Where a second effect has changed what the first one asks for, a wavelength is off by more than its valley is wide
+    over whole trials, and by less than it is over their beginnings.
+
+    Parameters
+    ----------
+    fitter
+        Of the dataset.
+    contender
+        One or two effects.
+    """
+    tracked = _tracked(fitter)
+    if not tracked:
+        return contender
+    assert contender.fit is not None
+    fitter.take_likeliest_noise(contender.effects)
+    return _fitted(fitter, contender, _followed_from(fitter, contender, [contender.point], tracked)[1])
+
+
+def _fitted(fitter: Fitter, contender: Contender, start: Floats) -> Contender:
+    """Fit a contender to all of the trials from a start, and keep what is better against the noise of the moment."""
+    assert contender.fit is not None
+    fit = fitter.fit(contender.fit.hypothesis, start, evaluations=_LAST_POINTS)
     return of_fit(fitter, min(fitter.again(contender.fit), fit, key=lambda fit: fit.cost))
 
 
@@ -128,14 +155,23 @@ def _staged(fitter: Fitter, hypothesis: Hypothesis, points: Sequence[Floats], tr
 
 
 def _followed(fitter: Fitter, contender: Contender, possible: Sequence[Hypothesis], tracked: tuple[int, ...]) -> Floats:
-    """Return the point that is best after fits from all close starts, fewer of them over more of the trials."""
+    """Return the point that is best after fits from where a contender is and from all close starts."""
+    # Over the first beginnings many do as well as the right one: where it is does not have to beat them there.
+    starts = [contender.point], _starts_within(contender, possible)
+    return min((_followed_from(fitter, contender, points, tracked) for points in starts), key=lambda end: end[0])[1]
+
+
+def _followed_from(
+    fitter: Fitter, contender: Contender, points: Sequence[Floats], tracked: tuple[int, ...]
+) -> tuple[float, Floats]:
+    """Return the best end of fits from some points, fewer of them over more of the trials, with its objective."""
     assert contender.fit is not None
-    hypothesis = contender.fit.hypothesis
-    points = _starts_within(contender, possible)
+    ends: list[tuple[float, Floats]] = []
     for stage, count in _FOLLOWED:
-        ends = [fitter.descend(hypothesis, point, tracked, _STAGE_POINTS, stage) for point in points[:count]]
-        points = [point for _, point in sorted(ends, key=lambda end: end[0])]
-    return points[0]
+        ends = [fitter.descend(contender.fit.hypothesis, p, tracked, _STAGE_POINTS, stage) for p in points[:count]]
+        ends.sort(key=lambda end: end[0])
+        points = [point for _, point in ends]
+    return ends[0]
 
 
 def _starts_within(contender: Contender, possible: Sequence[Hypothesis]) -> list[Floats]:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..effects.base import Effect
 from ..progress import OnPhase
-from .beginnings import MANY, beginning, from_beginnings, promise
+from .beginnings import MANY, beginning, from_beginnings, from_its_own_beginning, promise
 from .contender import Contender, likeliest, likeliest_first, of_fit, of_nominal
 from .counterpart import counterparts
 from .fit import Fit, Fitter
@@ -57,8 +57,8 @@ _REFINED, _PROMISING = 2, 4
 # The leader of before, found farther away, is a new first of pairs where that takes more than this share of what it
 # leaves off the objective.
 _FARTHER = 0.1
-# Effects to which a second is added, the farther ones only where the best leaves a gap.
-_FIRSTS = 2
+# Effects to which a second is added: the farther ones only where the best leaves a gap, more only where all pairs do.
+_FIRSTS, _MORE_FIRSTS = 2, 5
 # Fits that are looked around, how many of the points around one are fitted on in so many trial points, and how often.
 _SHAKEN, _SHAKEN_FITS, _SHAKEN_POINTS, _SHAKES = 3, 2, 3, 2
 # Pairs whose beginnings are searched, and singles for which one of the best pair is exchanged.
@@ -327,12 +327,17 @@ class Search:
     def _refined(self, contenders: Sequence[Contender], count: int) -> list[Contender]:
         """Fit the best so many again from points over their whole range, the beginnings of the trials first.
 
-        Where an effect is strong, paths soon have nothing in common any more; their beginnings still have.
+        Where an effect is strong, paths soon have nothing in common any more; their beginnings still have. A pair of
+        many parameters that is not the best starts from where it is and from nowhere else.
         """
         made = list(contenders)
-        for k in _to_refine(made, count):
+        wide = _to_refine(made, count)
+        for k, contender in enumerate(made[:count]):
             self.tell("points over the whole range", k, count)
-            made[k] = from_beginnings(self.fitter, made[k], self.possible, self.seed)
+            if k in wide:
+                made[k] = from_beginnings(self.fitter, contender, self.possible, self.seed)
+            elif len(contender.names) > 1:
+                made[k] = from_its_own_beginning(self.fitter, contender)
         return likeliest_first(made)
 
     def _pairs(self, singles: Sequence[Contender], strong: bool, known: Sequence[Contender] = ()) -> list[Contender]:
@@ -351,6 +356,13 @@ class Search:
             return found
         found = settled(self.fitter, found, self.tell)
         pairs = Pairs(self.fitter, self.possible, self.hints, found)
+        # Where both are strong, either alone may be far from the best.
+        if wanting and not self._is_enough(found):
+            for n, first in enumerate(far := firsts(singles[:_MORE_FIRSTS])[len(near) :]):
+                self.tell("fitting pairs", n, len(far))
+                pairs.add(first, singles)
+            found = settled(self.fitter, pairs.likeliest_first(), self.tell)
+            pairs = Pairs(self.fitter, self.possible, self.hints, found)
         # The best second may be the answer to a first that is wrong: with it held, is there a better first?
         best = found[0]
         assert best.fit is not None
