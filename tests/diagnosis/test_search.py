@@ -16,9 +16,9 @@ from tumblers.diagnosis.contender import Contender, of_fit, of_nominal
 from tumblers.diagnosis.fit import Fitter
 from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.loss import FAR, robust_cost
-from tumblers.diagnosis.own_noise import against_itself, against_the_best, beside, settled_at
+from tumblers.diagnosis.own_noise import NEAR, against_itself, against_the_best, beside, settled_at
 from tumblers.diagnosis.pairs import Pairs, firsts
-from tumblers.diagnosis.search import Search
+from tumblers.diagnosis.search import Search, _kept
 from tumblers.diagnosis.simulator import LONGEST_STEP_S, Job, Simulator
 from tumblers.diagnosis.step_credit import step_credit
 from tumblers.diagnosis.thresholds import CLEAR, beyond_thresholds
@@ -165,6 +165,80 @@ def test_a_shorter_step_is_imposed_only_for_what_leads_without_its_credit(compli
         assert {c.step_credit for c in again} == {0.0}
         assert max(simulator.step_s) <= ContactCompliance.longest_step_s * (1.0 + 1e-9)
     assert simulator.resolves(best.effects)
+
+
+def test_longer_steps_are_taken_for_a_while_and_leave_nothing_behind() -> None:
+    fitter = _coarse_lab()
+    comparison, simulator = fitter.comparison, fitter.comparison.simulator
+    simulator.step_s = [LONGEST_STEP_S, 0.5 * LONGEST_STEP_S, 0.25 * LONGEST_STEP_S]
+    comparison._start()
+    compliant = (ContactCompliance(compliance_m_per_N=1e-6),)
+
+    def seen() -> tuple[float, ...]:
+        fitter.take_likeliest_noise(())
+        nominal, credit = of_nominal(fitter), step_credit(fitter, compliant)
+        fitter.take_likeliest_noise(compliant)
+        return nominal.total, credit, of_nominal(fitter).total
+
+    before, steps, paths, floors = seen(), list(simulator.step_s), comparison.nominal_paths, comparison.floors
+    assert before[1] > 10.0, "what the credit is in the longer steps must not stay"
+
+    def interrupted() -> None:
+        with comparison.in_longer_steps():
+            assert simulator.step_s == [LONGEST_STEP_S, LONGEST_STEP_S, 0.5 * LONGEST_STEP_S]
+            assert comparison.log_determinant == 0.0, "the nominal model's noise is that of the longer steps"
+            assert comparison.floors[2].numerical_sigmas > floors[2].numerical_sigmas
+            assert seen()[1] != before[1]
+            # What it is not run in is too long for it; what only shows is not.
+            assert not comparison.halve_steps_for((FrictionCoefficient(factor=0.5),))
+            assert comparison.halve_steps_for(compliant)
+            assert simulator.resolves(compliant)
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
+    assert simulator.step_s == steps
+    assert comparison.nominal_paths is paths
+    assert comparison.floors is floors
+    assert seen() == before
+
+
+def test_what_longer_steps_found_counts_by_what_it_is_in_the_right_ones(monkeypatch: pytest.MonkeyPatch) -> None:
+    fitter = _coarse_lab(SizeError(length_factor=1.1))
+    comparison = fitter.comparison
+    comparison.simulator.step_s = [0.5 * LONGEST_STEP_S] * 3
+    comparison._start()
+    search = Search(fitter, [CATALOGUE[name] for name in MANY_KINDS], quiet, 0)
+    flattered: list[Contender] = []
+
+    def found(nominal: Contender) -> list[Contender]:
+        assert comparison.simulator.step_s == [LONGEST_STEP_S] * 3
+        first, *others = search._singles(nominal)
+        assert first.names == ("size_error",)
+        # The last one's objective is what no error of a step could make it.
+        flattered.append(replace(others[-1], cost=-1e9))
+        return [*flattered, first, *others[:-1]]
+
+    monkeypatch.setattr(search, "_far_and_wide", found)
+    made = search.contenders()
+    assert max(comparison.simulator.step_s) <= 0.5 * LONGEST_STEP_S
+    assert len(made) == 1 + len(search.possible)
+    best = min(made, key=lambda contender: contender.total)
+    assert best.names == ("size_error",)
+    assert best.settled
+    assert best.total == pytest.approx(beside(fitter, best, best).total, rel=1e-9)
+    (again,) = (contender for contender in made if contender.names == flattered[0].names)
+    assert again.total > best.total + NEAR
+
+
+def test_what_was_settled_does_not_give_way_to_what_was_not() -> None:
+    fitter = _coarse_lab(SizeError(length_factor=1.1))
+    fitter.take_likeliest_noise(())
+    made = of_nominal(fitter)
+    old, new, better = replace(made, settled=True), replace(made, cost=-9.0), replace(made, cost=-9.0, settled=True)
+    for contender, kept in ((new, old), (better, better)):
+        assert _kept([contender], [old]) == [kept]
+    assert _kept([new], [replace(old, settled=False)]) == [new]
 
 
 def test_a_model_that_is_wrong_in_any_step_gives_no_credit() -> None:

@@ -22,8 +22,8 @@ Floats = NDArray[np.float64]
 # the trials' time are fitted one after another, the best alone after the first, in so many trial points; then all.
 _EVEN, _BY_DECADE, _DECADES = (8, 32), (16, 64), 1.7
 _BEST, _STAGES, _STAGE_POINTS, _LAST_POINTS = 3, (0.25, 0.5), 4, 6
-# Of more parameters than this, points over the range tell nothing: from all close starts, then from the best so
-# many, these shares are fitted.
+# Of more parameters than this, points over the range tell nothing: from where it is and from all close starts, then
+# from the best so many, these shares are fitted.
 MANY, _FOLLOWED = 4, ((0.1, None), (0.25, 4), (0.5, 2))
 
 

@@ -89,6 +89,7 @@ class Comparison:
             for i, observed in enumerate(observe(dataset))
         )
         choose_steps(simulator, self.readers)
+        self._longer = False
         self.nominal_paths: list[Path | None]
         self.floors: tuple[Floor, ...]
         self._known: dict[tuple[Effect, ...], list[Sensitivity]]
@@ -112,6 +113,8 @@ class Comparison:
     def halve_steps_for(self, effects: tuple[Effect, ...]) -> bool:
         """Halve the steps that are too long for a hypothesis, and return whether there were any.
 
+        In longer steps (`in_longer_steps`) only those are that it is not run in.
+
         Where there were, the noise is the nominal model's again, and older residuals do not compare any more.
 
         Parameters
@@ -119,7 +122,11 @@ class Comparison:
         effects
             The hypothesis.
         """
-        if not choose_steps(self.simulator, self.readers, effects):
+        if self._longer:
+            changed = self.simulator.shorten_steps_for(effects)
+        else:
+            changed = choose_steps(self.simulator, self.readers, effects)
+        if not changed:
             return False
         self._start()
         return True
@@ -133,6 +140,24 @@ class Comparison:
         finally:
             self.simulator.step_s = steps
             self._known, self.floors, self.nominal_paths = known, floors, paths
+
+    @contextmanager
+    def in_longer_steps(self) -> Iterator[None]:
+        """Run all in twice the steps, none longer than the longest; at the end all is as it was.
+
+        The noise inside is that of the longer steps: what they get wrong speaks for nothing there either. Objectives
+        inside do not compare with those outside.
+        """
+        known, determinant = self.step_credits, self._nominal_log_determinant
+        with self.restored():
+            self._longer = True
+            self.simulator.lengthen_steps()
+            self._start()
+            try:
+                yield
+            finally:
+                self._longer = False
+                self.step_credits, self._nominal_log_determinant = known, determinant
 
     def take_steps_of(self, effects: tuple[Effect, ...]) -> None:
         """Run the nominal model in the steps that a hypothesis is run in.

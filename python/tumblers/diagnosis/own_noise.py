@@ -24,6 +24,7 @@ from .thresholds import CLEAR
 __all__ = [
     "ENOUGH",
     "IDLE_POINTS",
+    "NEAR",
     "POLISH_POINTS",
     "again",
     "against_itself",
@@ -47,7 +48,7 @@ _SETTLED, _ROUNDS = 2, 2
 # was known, five effects gained 640 to 790.
 _AS_MUCH = 1.5
 # What comes so near to the best is held against its own noise, so many at most.
-_NEAR, _MOST_NEAR = 300.0, 6
+NEAR, _MOST_NEAR = 300.0, 6
 
 
 def again(fitter: Fitter, contenders: Sequence[Contender]) -> list[Contender]:
@@ -154,7 +155,7 @@ def each_by_itself(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhas
     count = 0
     # Where all of the nearest lost by it, the leader may be one that has not been held so.
     while count < _MOST_NEAR or not made[0].settled:
-        far = made[0].total + _NEAR
+        far = made[0].total + NEAR
         waiting = [k for k, contender in enumerate(made) if not contender.settled and contender.total <= far]
         if not waiting:
             break
@@ -219,7 +220,7 @@ def against_the_best(fitter: Fitter, nominal: Contender, contenders: Sequence[Co
     best = contenders[0]
     made = [best]
     for contender in (nominal, *contenders[1:]):
-        near = contender.total <= best.total + _NEAR
+        near = contender.total <= best.total + NEAR
         other = beside(fitter, contender, best) if near else contender
         lent = other.total < contender.total and _says_the_same(fitter, contender, best, other)
         made.append(other if lent else contender)

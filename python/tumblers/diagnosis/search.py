@@ -2,12 +2,14 @@
 
 Where an effect is weak, differences are linear in it and a few steps of least squares from a scan suffice. Where it is
 strong, the objective has many minima: thresholds, motions that soon have nothing in common. Then lines through the
-ranges are halved, and many points over the whole range are fitted to the beginnings of the trials first.
+ranges are halved, and many points over the whole range are fitted to the beginnings of the trials first, all of it in
+longer steps than what is found is held in.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +26,7 @@ from .nearby import points_around
 from .own_noise import (
     ENOUGH,
     IDLE_POINTS,
+    NEAR,
     POLISH_POINTS,
     again,
     against_itself,
@@ -104,40 +107,82 @@ class Search:
         enough = self.comparison.nuisances.enough(nominal.residual.local)
         held = (hypothesis.without(enough) for hypothesis in self.possible)
         self.possible = [hypothesis for hypothesis in held if len(hypothesis.starts)]
+        # What is weak is found where it starts: only a strong cause has minima of its own, far away.
+        return self._of_strong(nominal) if not is_right(self.comparison, nominal.residual) else self._of_weak(nominal)
+
+    def _of_weak(self, nominal: Contender) -> list[Contender]:
         singles = self._singles(nominal)
         if not singles or singles[0].total > nominal.total - self.worth:
             return [nominal, *singles]
         nominal, singles = self._resolved(nominal, singles)
+        if not is_right(self.comparison, nominal.residual):
+            # Only in shorter steps it shows that it is wrong.
+            return self._of_strong(nominal)
         singles = settled(self.fitter, singles, self.tell, _OWN, _MOST_OWN)
-        # What is weak is found where it starts: only a strong cause has minima of its own, far away.
-        strong = not is_right(self.comparison, nominal.residual)
-        if not strong and singles[0].total > nominal.total - self.worth:
+        if singles[0].total > nominal.total - self.worth:
             return self._concluded(nominal, singles)
         singles = self._all_shaken(singles)
+        return self._concluded(nominal, self._with_shaken_pair(singles, self._pairs(singles, strong=False)))
+
+    def _of_strong(self, nominal: Contender) -> list[Contender]:
+        """Search in longer steps, and hold what is found in the right ones.
+
+        A strong cause moves the robot by much more than the longer steps get wrong.
+        """
+        with self.comparison.in_longer_steps():
+            self.fitter.take_likeliest_noise(())
+            found = self._far_and_wide(of_nominal(self.fitter))
+        if not found:
+            return [nominal]
+        made = self._in_short_steps(found)
+        self.fitter.take_likeliest_noise(())
+        return self._concluded(of_nominal(self.fitter), made)
+
+    def _in_short_steps(self, found: Sequence[Contender]) -> list[Contender]:
+        """Hold what was found in longer steps in those of the moment: what came near the best against its own noise."""
+        self.comparison.halve_steps_for(found[0].effects)
+        self.fitter.take_likeliest_noise(found[0].effects)
+        near = found[0].total + NEAR
+        held = [c if c.total <= near else replace(c, settled=False) for c in found]
+        made = settled(self.fitter, again(self.fitter, held), self.tell)
+        return likeliest_first([self._shaken(made[0]), *made[1:]])
+
+    def _far_and_wide(self, nominal: Contender) -> list[Contender]:
+        """Search over the whole ranges, add second effects, look for what does the same; the likeliest first."""
+        singles, worth = self._singles(nominal), nominal.total - self.worth
+        if not singles or singles[0].total > worth:
+            return singles
+        nominal, singles = self._resolved(nominal, singles)
+        singles = settled(self.fitter, singles, self.tell, _OWN, _MOST_OWN)
+        singles = self._all_shaken(singles)
+        pairs: list[Contender] = []
         refined: set[tuple[str, ...]] = set()
-        if strong and self._is_wanting(singles[0]):
+        worth = nominal.total - self.worth
+        if self._is_wanting(singles[0]):
             refined = {singles[k].names for k in _to_refine(singles, _REFINED)}
             singles = settled(self.fitter, self._refined(singles, _REFINED), self.tell)
-        pairs, worth = [], nominal.total - self.worth
         if singles[0].total <= worth:
-            pairs = self._pairs(singles, strong)
+            pairs = self._pairs(singles, strong=True)
         # Where two effects leave no gap, what is far away is not looked for.
-        if strong and not self._is_enough([*singles, *pairs]):
+        if not self._is_enough([*singles, *pairs]):
             far = settled(self.fitter, self._far(singles, refined), self.tell)
             near, singles = singles, far
             more = CLEAR if near[0].names != far[0].names else max(CLEAR, _FARTHER * far[0].cost)
             untried = near[0].total > worth
             if far[0].total <= worth and (untried or near[0].total - far[0].total > more):
-                pairs = self._pairs(singles, strong, pairs)
-        elif strong and not (pairs and pairs[0].total < singles[0].total - self.worth):
+                pairs = self._pairs(singles, strong=True, known=pairs)
+        elif not (pairs and pairs[0].total < singles[0].total - self.worth):
             singles = settled(self.fitter, self._elsewhere(singles, refined), self.tell)
-        if pairs and singles[0].total <= worth:
-            pairs = likeliest_first([self._shaken(pairs[0]), *pairs[1:]])
-            singles = [self._nested(pairs[0], singles[0]), *singles[1:]]
-        made = likeliest_first([*singles, *pairs])
-        if strong and made[0].total <= worth:
-            made = self._with_counterparts(made)
-        return self._concluded(nominal, made)
+        made = self._with_shaken_pair(singles, pairs) if singles[0].total <= worth else [*singles, *pairs]
+        made = likeliest_first(made)
+        return self._with_counterparts(made) if made[0].total <= worth else made
+
+    def _with_shaken_pair(self, singles: Sequence[Contender], pairs: Sequence[Contender]) -> list[Contender]:
+        """Look around the best pair, and for its best single effect again from there."""
+        if not pairs:
+            return list(singles)
+        pairs = likeliest_first([self._shaken(pairs[0]), *pairs[1:]])
+        return likeliest_first([self._nested(pairs[0], singles[0]), *singles[1:], *pairs])
 
     def in_steps_of(self, leader: Contender, contenders: Sequence[Contender]) -> list[Contender]:
         """Return the nominal model and the others again, in steps that are short enough for one of them.
@@ -328,7 +373,7 @@ class Search:
         """Fit the best so many again from points over their whole range, the beginnings of the trials first.
 
         Where an effect is strong, paths soon have nothing in common any more; their beginnings still have. A pair of
-        many parameters that is not the best starts from where it is and from nowhere else.
+        many parameters that is not the best starts from where it is and from nowhere else; such a single is left as it is.
         """
         made = list(contenders)
         wide = _to_refine(made, count)
@@ -354,14 +399,14 @@ class Search:
         found = pairs.likeliest_first()
         if not found or found[0].total > singles[0].total - self.worth:
             return found
-        found = settled(self.fitter, found, self.tell)
+        found = _kept(settled(self.fitter, found, self.tell), known)
         pairs = Pairs(self.fitter, self.possible, self.hints, found)
         # Where both are strong, either alone may be far from the best.
         if wanting and not self._is_enough(found):
             for n, first in enumerate(far := firsts(singles[:_MORE_FIRSTS])[len(near) :]):
                 self.tell("fitting pairs", n, len(far))
                 pairs.add(first, singles)
-            found = settled(self.fitter, pairs.likeliest_first(), self.tell)
+            found = _kept(settled(self.fitter, pairs.likeliest_first(), self.tell), found)
             pairs = Pairs(self.fitter, self.possible, self.hints, found)
         # The best second may be the answer to a first that is wrong: with it held, is there a better first?
         best = found[0]
@@ -371,16 +416,24 @@ class Search:
             if kind.name not in near[0].names:
                 single = single_of(self.fitter, self.possible, best, kind, IDLE_POINTS)
                 pairs.add(single, singles[:_EXCHANGED])
-        found = pairs.likeliest_first()
+        before, found = found, pairs.likeliest_first()
         # However little the best leaves: against a sharper noise another may leave as little.
         if strong:
             found = self._refined(found, _PAIRS_REFINED)
-        found = settled(self.fitter, found, self.tell)
-        # What looked better against another's noise must not take the place of what was settled.
-        before = {frozenset(pair.names): pair for pair in known if pair.settled}
-        better = (before.get(frozenset(pair.names), pair) for pair in found)
-        both = zip(found, better, strict=True)
-        return likeliest_first(likeliest([pair, old]) if pair.settled else old for pair, old in both)
+        return _kept(settled(self.fitter, found, self.tell), before)
+
+
+def _kept(found: Sequence[Contender], before: Sequence[Contender]) -> list[Contender]:
+    """Return what was found, the likeliest first, but what was settled before where that is likelier or the new is not.
+
+    What looks better against another's noise must not take its place.
+    """
+    known = {frozenset(contender.names): contender for contender in before if contender.settled}
+    made = []
+    for contender in found:
+        old = known.get(frozenset(contender.names), contender)
+        made.append(likeliest([contender, old]) if contender.settled else old)
+    return likeliest_first(made)
 
 
 def _to_refine(contenders: Sequence[Contender], count: int) -> list[int]:

@@ -179,6 +179,11 @@ class Simulator:
         step = min(2.0 * scenario.run.fixed_step_s, longest_step_s(scenario.field))
         return replace(scenario, run=replace(scenario.run, step_s=step))
 
+    def lengthen_steps(self) -> None:
+        """Take twice the steps, but none that is longer than the longest."""
+        longest = [longest_step_s(trial.field) for trial in self.dataset.trials]
+        self.step_s = [min(2.0 * step, most) for step, most in zip(self.step_s, longest, strict=True)]
+
     def shorten_steps_for(self, effects: Sequence[Effect]) -> bool:
         """Take the steps that effects are run in for the nominal model too, and return whether any changed.
 
