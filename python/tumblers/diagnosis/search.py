@@ -373,7 +373,7 @@ class Search:
         """Fit the best so many again from points over their whole range, the beginnings of the trials first.
 
         Where an effect is strong, paths soon have nothing in common any more; their beginnings still have. A pair of
-        many parameters that is not the best starts from where it is and from nowhere else; such a single is left as it is.
+        many parameters that is not the best starts from where it is and from nowhere else; a single such one stays.
         """
         made = list(contenders)
         wide = _to_refine(made, count)
