@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from tumblers.diagnosis.beginnings import from_beginnings, from_its_own_beginning, promise
+from tumblers.diagnosis.beginnings import MANY, from_beginnings, from_its_own_beginning, promise
 from tumblers.diagnosis.comparison import Comparison, Residual
 from tumblers.diagnosis.contender import Contender, of_fit, of_nominal
 from tumblers.diagnosis.fit import Fitter
@@ -417,6 +417,38 @@ def test_more_firsts_are_tried_where_every_pair_leaves_a_gap(enough: bool, monke
     assert search._pairs(singles, strong=True)
     # What is exchanged later is another contender of the same name.
     assert [any(first is single for first in tried) for single in singles] == [True, True, *(3 * [not enough]), False]
+
+
+def test_of_many_parameters_the_best_is_searched_over_its_range_and_another_pair_from_where_it_is(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    fitter = _coarse_lab()
+    search = Search(fitter, [SizeError, SurfaceRoughness], quiet, 0)
+    size, rough = sorted(search.possible, key=lambda hypothesis: hypothesis.free)
+    assert size.free <= MANY < rough.free
+    few, many, pair = (
+        of_fit(fitter, fitter.fit(h, np.zeros(len(h.neutral)), evaluations=1)) for h in (size, rough, size + rough)
+    )
+    sought: list[tuple[str, Contender]] = []
+
+    def over_the_range(_fitter: Fitter, contender: Contender, *_: object) -> Contender:
+        sought.append(("range", contender))
+        return contender
+
+    def from_where_it_is(_fitter: Fitter, contender: Contender) -> Contender:
+        sought.append(("here", contender))
+        return contender
+
+    monkeypatch.setattr("tumblers.diagnosis.search.from_beginnings", over_the_range)
+    monkeypatch.setattr("tumblers.diagnosis.search.from_its_own_beginning", from_where_it_is)
+    for contenders, expected in (
+        ([pair, few], [("range", pair), ("range", few)]),
+        ([few, pair], [("range", few), ("here", pair)]),
+        ([few, many, pair], [("range", few)]),
+    ):
+        sought.clear()
+        search._refined(contenders, 2)
+        assert sought == expected
 
 
 def test_an_effect_promises_something_where_it_is_not_yet_where_it_should_be() -> None:

@@ -139,13 +139,18 @@ class Search:
         return self._concluded(of_nominal(self.fitter), made)
 
     def _in_short_steps(self, found: Sequence[Contender]) -> list[Contender]:
-        """Hold what was found in longer steps in those of the moment: what came near the best against its own noise."""
+        """Hold what was found in longer steps in those of the moment, and fit the best on."""
         self.comparison.halve_steps_for(found[0].effects)
         self.fitter.take_likeliest_noise(found[0].effects)
+        # What came near the best counts against its own noise here too.
         near = found[0].total + NEAR
-        held = [c if c.total <= near else replace(c, settled=False) for c in found]
-        made = settled(self.fitter, again(self.fitter, held), self.tell)
-        return likeliest_first([self._shaken(made[0]), *made[1:]])
+        held = again(self.fitter, [c if c.total <= near else replace(c, settled=False) for c in found])
+        made = settled(self.fitter, [replace(contender, settled=False) for contender in held], self.tell)
+        made = likeliest_first([self._shaken(made[0]), *made[1:]])
+        if len(made[0].names) == 1:
+            return made
+        single = likeliest(contender for contender in made if len(contender.names) == 1)
+        return likeliest_first([self._nested(made[0], single), *(c for c in made if c is not single)])
 
     def _far_and_wide(self, nominal: Contender) -> list[Contender]:
         """Search over the whole ranges, add second effects, look for what does the same; the likeliest first."""
