@@ -3,7 +3,7 @@
 Every effect is fitted, then pairs by forward selection from the best. Hypotheses are compared by Laplace's evidence,
 
 ```text
-ln Z = -(cost + ln det Σ)/(2c) - ½ ln det(1 + σ_u² JᵀJ/c) + ln prior,
+ln Z = -(cost + ln det Σ)/(2c) + ln Occam + ln prior,
 c = max(1, cost of the best / number of measurements) n_c
 ```
 
@@ -29,21 +29,17 @@ from ..progress import OnPhase
 from .comparison import Comparison
 from .contender import Contender, of_fit, of_nominal
 from .fit import Fitter
-from .hypothesis import PRIOR_SIGMA
+from .occam import SECOND, log_occam
 from .predictive import is_right
 from .search import Search
 from .tolerated import is_tolerated
 
-__all__ = ["LAPSE", "PRIOR", "REFUSED", "SECOND", "Attribution", "attribute", "seen_from_the_best"]
+__all__ = ["LAPSE", "PRIOR", "REFUSED", "Attribution", "attribute", "seen_from_the_best"]
 
 Floats = NDArray[np.float64]
 
 # Prior probabilities: that there is no gap, one effect, two.
 PRIOR = {0: 0.4, 1: 0.45, 2: 0.15}
-# ln of the odds that a second effect must win beside: one effect in a form that is not the catalogue's leaves what a
-# second could explain as well. Chosen from twelve datasets with a known truth in which two effects were named: where
-# one was at work the second had won 2.4 to 7.4 over the best single one, where two were 20 or more.
-SECOND = 10.0
 # How often the likeliest is wrong however strong the evidence: a form that the catalogue lacks, a minimum that no
 # search found. Shared by all, and of the order of what datasets with a known truth showed while this was developed.
 LAPSE = 0.12
@@ -54,8 +50,8 @@ LAPSE = 0.12
 REFUSED = 0.02
 # Trial points of the last fit of the best, from where it is: intervals are no better than it.
 _LAST_POINTS = 12
-# Of equals the one with fewer parameters is preferred, then the one that the catalogue lists first.
-_PER_PARAMETER, _PER_PLACE = 0.15, 0.005
+# Of equals the one that the catalogue lists first is preferred.
+_PER_PLACE = 0.005
 
 
 @dataclass(frozen=True, eq=False)
@@ -214,10 +210,9 @@ def _ranked(
     for c in contenders:
         likelihood = -0.5 * (c.total + (alike - 1.0) * comparison.outcome_cost(c.residual)) / dispersion
         evidence = likelihood + prior[len(c.names)]
-        evidence -= _PER_PARAMETER * c.free + _PER_PLACE * sum(place[name] for name in c.names)
+        evidence -= _PER_PLACE * sum(place[name] for name in c.names)
         if c.fit is not None:
-            information = c.fit.information(dispersion) * PRIOR_SIGMA**2
-            evidence -= 0.5 * float(np.linalg.slogdet(information)[1])
+            evidence += log_occam(c.fit, dispersion)
         scored.append((evidence, replace(c, log_likelihood=likelihood)))
     # Where nothing is likelier by as much, what does nothing would lead.
     nominal = next(c for _, c in scored if not c.names)

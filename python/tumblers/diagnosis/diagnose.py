@@ -16,7 +16,7 @@ from ..effects.catalogue import CATALOGUE, get
 from ..errors import InputError, show
 from ..progress import OnPhase, phases
 from ..version import __version__
-from .attribute import LAPSE, PRIOR, REFUSED, SECOND, Attribution, attribute, seen_from_the_best
+from .attribute import LAPSE, PRIOR, REFUSED, Attribution, attribute, seen_from_the_best
 from .comparison import Comparison
 from .contender import Contender
 from .diagnosis import Diagnosis
@@ -27,6 +27,7 @@ from .held_out import HeldOut, folds, held_out, is_foretold, shrink
 from .localise import localise
 from .loss import robust_cost
 from .next_trial import in_one_step, next_trials
+from .occam import SECOND
 from .overlay import overlays
 from .posterior import samples
 from .predictive import is_right

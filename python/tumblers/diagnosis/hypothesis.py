@@ -96,12 +96,21 @@ class Hypothesis:
         nuisances
             Of the sensor.
         """
-        held = np.array([p.beyond in nuisances for kind in self.kinds for p in kind.parameters])
-        if not held.any():
+        return self.held(np.array([p.beyond in nuisances for kind in self.kinds for p in kind.parameters]))
+
+    def held(self, those: NDArray[np.bool_]) -> Hypothesis:
+        """Return the hypothesis with some parameters at neutral.
+
+        Parameters
+        ----------
+        those
+            Whether a coordinate is held, shape (p,).
+        """
+        if not those.any():
             return self
-        low, high = np.where(held, 0.0, self.low), np.where(held, 0.0, self.high)
-        starts, close = (np.where(held, 0.0, those) for those in (self.starts, self.close))
-        starts, close = (those[np.any(those != 0.0, axis=1)] for those in (starts, close))
+        low, high = np.where(those, 0.0, self.low), np.where(those, 0.0, self.high)
+        starts, close = (np.where(those, 0.0, points) for points in (self.starts, self.close))
+        starts, close = (points[np.any(points != 0.0, axis=1)] for points in (starts, close))
         return replace(self, low=low, high=high, starts=starts, close=close)
 
     @property

@@ -14,6 +14,7 @@ objective, so that the bound may be off by a little: by less than what is clear,
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,8 +40,10 @@ def least(
     count: int,
     train: Sequence[int] | None = None,
     share: float = 1.0,
+    limit: float = inf,
+    shown: Sequence[Residual] = (),
 ) -> list[tuple[float, Floats]]:
-    """Return the best so many of some points with their objective, the best first.
+    """Return the best so many of some points with their objective, the best first; fewer where few are within a limit.
 
     Parameters
     ----------
@@ -54,6 +57,11 @@ def least(
         Trials that count; all if None.
     share
         Of each trial's time that counts.
+    limit
+        What costs more is of no use, and is left too.
+    shown
+        How wrong some hypotheses are that the trials have to part, where this is known; else some points are simulated
+        for it.
     """
     chosen = fitter.trials if train is None else tuple(train)
     costs: dict[int, float] = {}
@@ -67,8 +75,9 @@ def least(
             costs[k] = fitter.cost(residual, points[k], chosen)
         return residuals
 
-    pilots = np.unique(np.linspace(0, len(points) - 1, max(count, _PILOTS)).round().astype(int)).tolist()
-    shown = measure(pilots)
+    if not shown:
+        pilots = np.linspace(0, len(points) - 1, max(count, _PILOTS)).round().astype(int)
+        shown = measure(np.unique(pilots).tolist())
     left = [k for k in range(len(points)) if k not in costs]
     by_trial = np.array([[fitter.trial_cost(residual, i) for i in chosen] for residual in shown])
     for part in _parts(by_trial, _times(fitter, hypothesis.effects(points[0]), chosen)):
@@ -77,11 +86,11 @@ def least(
         some = tuple(chosen[n] for n in part)
         bounds = {k: fitter.cost(residual, points[k], some) for k, residual in zip(left, over(left, some), strict=True)}
         # What promises most lowers the limit for the rest.
-        measure(sorted(left, key=lambda k: (bounds[k], k))[:count])
-        limit = sorted(costs.values())[count - 1]
-        left = [k for k in left if k not in costs and bounds[k] <= limit + CLEAR]
+        measure([k for k in sorted(left, key=lambda k: (bounds[k], k))[:count] if bounds[k] <= limit + CLEAR])
+        bound = min([limit, *sorted(costs.values())[count - 1 : count]])
+        left = [k for k in left if k not in costs and bounds[k] <= bound + CLEAR]
     measure(left)
-    best = sorted(costs, key=lambda k: (costs[k], k))[:count]
+    best = sorted((k for k in costs if costs[k] <= limit), key=lambda k: (costs[k], k))[:count]
     return [(costs[k], points[k]) for k in best]
 
 

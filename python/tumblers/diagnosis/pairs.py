@@ -16,6 +16,7 @@ from ..effects.base import Effect
 from .contender import Contender, likeliest_first, of_fit
 from .fit import Fitter
 from .hypothesis import Hypothesis
+from .least import least
 from .own_noise import by_itself
 from .step_credit import step_credit
 from .thresholds import CLEAR
@@ -28,6 +29,9 @@ Floats = NDArray[np.float64]
 _NEAR_BEST = 0.5
 # Seconds that are fitted with each first; singles that are joined two and two, and joints that are fitted.
 _SECONDS, _JOINED, _JOINTS = 3, 4, 2
+# Shares of the way to either end of a range that are tried of what may stand in another's place; it is fitted where it
+# leaves no more than this share of what the other takes off the objective.
+_GRID, _AS_GOOD = (0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 1.0), 0.5
 # Trial points of a fit.
 _POINTS = 4
 
@@ -76,13 +80,7 @@ class Pairs:
             first = by_itself(self.fitter, first, evaluations=1)
         assert first.fit is not None
         self.fitter.take_likeliest_noise(first.effects)
-        # What each is by itself is one more start.
-        alone = {single.names: single.point for single in singles}
-        others = [
-            replace(h, starts=np.vstack([h.starts, alone[h.names], *self.hints.get(h.names, ())]))
-            for h in self.possible
-            if h.names != first.names and h.names in alone
-        ]
+        others = [other for other in self._seconds(singles) if other.names != first.names]
         joined = [first.fit.hypothesis + other for other in others]
         bases = [np.concatenate([first.point, np.zeros(len(other.neutral))]) for other in others]
         scans = self.fitter.scan(joined, bases, first.residual, first.fit.jacobian)
@@ -93,6 +91,38 @@ class Pairs:
         for k in np.argsort(costs, kind="stable")[:_SECONDS]:
             if costs[k] < first.cost + first.step_credit - CLEAR:
                 self._keep(joined[k], scans[k][0][1])
+
+    def exchange(self, pair: Contender, kind: type[Effect], singles: Sequence[Contender]) -> None:
+        """Fit what may stand in the place of one effect of a pair, against the pair's noise.
+
+        The other is held where it is: by itself it would move to where it makes up for what is missing, and there
+        another second looks best.
+
+        Parameters
+        ----------
+        pair
+            Two effects.
+        kind
+            The one of them that is exchanged.
+        singles
+            Those that may take its place, by themselves.
+        """
+        assert pair.fit is not None
+        kept = next(h for h in self.possible if h.names[0] in pair.names and h.kinds != (kind,))
+        point = pair.point[[name == kept.names[0] for name, _ in pair.fit.hypothesis.keys]]
+        self.fitter.take_likeliest_noise(pair.effects)
+        still, whole = self.fitter.residuals(kept, [point])[0], self.fitter.again(pair.fit)
+        limit = whole.cost + _AS_GOOD * max(self.fitter.cost(still, point) - whole.cost, 0.0)
+        tried: list[tuple[float, int, Hypothesis, Floats]] = []
+        for other in self._seconds(singles):
+            if other.names[0] in pair.names:
+                continue
+            both = kept + other
+            points = [np.concatenate([point, start]) for start in [*other.starts, *_line(other)]]
+            for cost, start in least(self.fitter, both, points, 1, limit=limit, shown=[still, whole.residual]):
+                tried.append((cost + step_credit(self.fitter, both.effects(start)), len(tried), both, start))
+        for _, _, both, start in sorted(tried, key=lambda entry: entry[:2])[:_SECONDS]:
+            self._keep(both, start)
 
     def join(self, singles: Sequence[Contender]) -> None:
         """Fit the best of the best singles two and two, from each one's own best and from halves.
@@ -120,11 +150,27 @@ class Pairs:
                 fitted.add(both.names)
                 self._keep(both, point)
 
+    def _seconds(self, singles: Sequence[Contender]) -> list[Hypothesis]:
+        """Return the effects of some singles; what each is by itself is one more start."""
+        alone = {single.names: single.point for single in singles}
+        return [
+            replace(h, starts=np.vstack([h.starts, alone[h.names], *self.hints.get(h.names, ())]))
+            for h in self.possible
+            if h.names in alone
+        ]
+
     def _keep(self, hypothesis: Hypothesis, start: Floats) -> None:
         contender = of_fit(self.fitter, self.fitter.fit(hypothesis, start, evaluations=_POINTS))
         names = frozenset(hypothesis.names)
         if names not in self._found or contender.total < self._found[names].total:
             self._found[names] = contender
+
+
+def _line(other: Hypothesis) -> list[Floats]:
+    """Return points over the range of an effect of one parameter."""
+    if other.free != 1:
+        return []
+    return [share * end for end in (other.low, other.high) if np.any(end) for share in _GRID]
 
 
 def firsts(singles: Sequence[Contender]) -> list[Contender]:

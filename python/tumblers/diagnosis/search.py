@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import replace
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +24,7 @@ from .fit import Fit, Fitter
 from .hypothesis import Hypothesis
 from .least import least
 from .nearby import points_around
+from .occam import SECOND
 from .own_noise import (
     ENOUGH,
     IDLE_POINTS,
@@ -38,6 +40,7 @@ from .own_noise import (
 )
 from .pairs import Pairs, firsts, single_of
 from .predictive import is_right, mean_square
+from .sparse import as_far
 from .thresholds import CLEAR, beyond_thresholds
 
 __all__ = ["Search"]
@@ -69,6 +72,9 @@ _PAIRS_REFINED, _EXCHANGED = 2, 6
 # Another effect is fitted that, by the beginnings or from where it does what the best does, leaves no more than this
 # share of the objective that the best takes off; how many from there, and how often the best may change by it.
 _AS_GOOD, _COUNTERPARTS, _ROUNDS = 0.5, 3, 2
+# What is less than e^12 behind the best, or takes as much of the gap, is fitted as far, so many at most: a total moves
+# by some e^3 with the place around which its noise is measured, and by more with where a fit stopped.
+_OPEN, _EQUALLY_FAR = 12.0, 3
 
 
 class Search:
@@ -207,10 +213,28 @@ class Search:
         """Return the nominal model and all others, each against the noise that counts."""
         while True:
             nominal, made = self._resolved(nominal, contenders)
-            contenders = each_by_itself(self.fitter, made, self.tell)
+            contenders = self._equally_far(each_by_itself(self.fitter, made, self.tell))
             # Against its own noise another may lead, which asks for shorter steps still.
             if self.comparison.simulator.resolves(contenders[0].effects):
                 return against_the_best(self.fitter, nominal, contenders)
+
+    def _equally_far(self, contenders: Sequence[Contender]) -> list[Contender]:
+        """Fit what may be as good as the best as far as that, without what it does not need."""
+        alike, made = self.comparison.alike, list(contenders)
+        scores = [c.total + 2.0 * alike * SECOND * (len(c.names) - 1) for c in made]
+        order = np.argsort(scores, kind="stable").tolist()
+        best, open_to = made[order[0]], scores[order[0]] + 2.0 * alike * _OPEN
+        # All against one noise: what does as the best does may have stopped beside its valley.
+        self.fitter.take_likeliest_noise(best.effects)
+        costs = [inf if c.fit is None else self.fitter.again(c.fit).cost + c.step_credit for c in made]
+        here = costs[order[0]]
+        as_good = here + _AS_GOOD * max(self.fitter.nominal()[1] - here, 0.0)
+        alike_kind = [len(c.names) == len(best.names) and cost < as_good for c, cost in zip(made, costs, strict=True)]
+        near = [k for k in order if scores[k] < open_to or alike_kind[k]]
+        for n, k in enumerate(near[:_EQUALLY_FAR]):
+            self.tell("fitting those near the best as far", n, min(len(near), _EQUALLY_FAR))
+            made[k] = as_far(self.fitter, made[k], alike)
+        return likeliest_first(made)
 
     def _resolved(self, nominal: Contender, contenders: Sequence[Contender]) -> tuple[Contender, list[Contender]]:
         """Return the nominal model and the others in steps that are short enough for the leader."""
@@ -413,19 +437,27 @@ class Search:
                 pairs.add(first, singles)
             found = _kept(settled(self.fitter, pairs.likeliest_first(), self.tell), found)
             pairs = Pairs(self.fitter, self.possible, self.hints, found)
-        # The best second may be the answer to a first that is wrong: with it held, is there a better first?
-        best = found[0]
-        assert best.fit is not None
-        for n, kind in enumerate(best.fit.hypothesis.kinds):
-            self.tell("exchanging one of the pair", n, 2)
-            if kind.name not in near[0].names:
-                single = single_of(self.fitter, self.possible, best, kind, IDLE_POINTS)
-                pairs.add(single, singles[:_EXCHANGED])
-        before, found = found, pairs.likeliest_first()
         # However little the best leaves: against a sharper noise another may leave as little.
         if strong:
-            found = self._refined(found, _PAIRS_REFINED)
-        return _kept(settled(self.fitter, found, self.tell), before)
+            found = _kept(settled(self.fitter, self._refined(found, _PAIRS_REFINED), self.tell), found)
+        return self._exchanged(found, singles)
+
+    def _exchanged(self, found: Sequence[Contender], singles: Sequence[Contender]) -> list[Contender]:
+        """Exchange either effect of the best pair: one may be the answer to another that is wrong."""
+        made, held = list(found), set[str]()
+        for n in range(_ROUNDS):
+            self.tell("exchanging one of the pair", n, _ROUNDS)
+            best = made[0]
+            assert best.fit is not None
+            pairs = Pairs(self.fitter, self.possible, self.hints, made)
+            for kind, other in zip(best.fit.hypothesis.kinds, best.names[::-1], strict=True):
+                if other not in held:
+                    pairs.exchange(best, kind, singles)
+                    held.add(other)
+            made = _kept(settled(self.fitter, pairs.likeliest_first(), self.tell), made)
+            if made[0].names == best.names:
+                break
+        return made
 
 
 def _kept(found: Sequence[Contender], before: Sequence[Contender]) -> list[Contender]:

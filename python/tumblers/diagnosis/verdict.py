@@ -16,8 +16,9 @@ __all__ = ["judge", "refused", "ties"]
 
 # Where noise may explain it all, an effect is named only where that is less probable than this.
 _LEAST_DOUBT = 0.05
-# Evidence or likelihoods less than this factor apart (ln 20), or predictions that differ by less than this in sigmas.
-_TIED, _SAME = 3.0, 0.05
+# Evidence or likelihoods less than this factor apart, ln 20 and the e^3 by which they move within a deviation of
+# the best with where the noise is measured; or predictions that differ by less than this in sigmas.
+_TIED, _SAME = 6.0, 0.3
 
 
 def judge(comparison: Comparison, attribution: Attribution, foretold: bool) -> tuple[Verdict, Contender]:

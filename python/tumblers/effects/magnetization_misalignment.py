@@ -44,6 +44,7 @@ class MagnetizationMisalignment(Effect):
             high=30.0,
             unit="degrees",
             meaning="angle between the axis and the nominal one",
+            always=True,
         ),
         Parameter(
             key="theta2_deg",
@@ -53,6 +54,7 @@ class MagnetizationMisalignment(Effect):
             unit="degrees",
             meaning="direction of the error about the long axis",
             turns=True,
+            always=True,
         ),
     )
     theta1_deg: float = 0.0

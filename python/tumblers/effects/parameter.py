@@ -37,6 +37,9 @@ class Parameter:
     beyond
         Which of the sensor's nuisances does the same to each trial within its tolerance, if any does: a diagnosis
         searches the parameter where that tolerance is not enough.
+    always
+        Whether it has a value of its own wherever the effect acts, as a wavelength has; any other may be at neutral
+        while the rest act, and a diagnosis counts on that.
     """
 
     key: str
@@ -50,6 +53,7 @@ class Parameter:
     turns: bool = False
     fine: float | None = None
     beyond: Nuisance | None = None
+    always: bool = False
 
     @property
     def field(self) -> str:

@@ -53,6 +53,7 @@ class SurfaceRoughness(Effect):
             unit="m",
             meaning="longest wave of the heights",
             above=0.0,
+            always=True,
         ),
         Parameter(
             key="cosine_m[0]", neutral=0.0, low=-2e-05, high=2e-05, unit="m", meaning="cosine amplitude of wave 1"

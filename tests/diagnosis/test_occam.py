@@ -1,0 +1,81 @@
+"""Occam's factor: a spike at neutral and a slab beside it, against the integrals written out."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.special import logsumexp
+
+from tumblers.diagnosis.comparison import Residual
+from tumblers.diagnosis.fit import Fit
+from tumblers.diagnosis.hypothesis import PRIOR_SIGMA, Hypothesis
+from tumblers.diagnosis.occam import log_occam, neutral_sets
+from tumblers.diagnosis.simulator import Simulator
+from tumblers.effects.catalogue import CATALOGUE
+
+from .lab import plan
+
+NOTHING = Residual((), *np.empty((4, 0)))
+SCENARIO = Simulator(plan()).nominal(0)
+
+
+def hypothesis_of(*names: str) -> Hypothesis:
+    """Return the hypothesis of some effects."""
+    first, *more = [Hypothesis.of(CATALOGUE[name], [SCENARIO]) for name in names]
+    return sum(more, start=first)
+
+
+@pytest.mark.parametrize(
+    ("names", "sets"),
+    [
+        (("friction_coefficient",), {()}),
+        (("substrate_tilt",), {(), (0,), (1,)}),
+        # The direction of an error has no place of its own without its angle, nor a wavelength without amplitudes.
+        (("magnetization_misalignment",), {()}),
+        (("friction_coefficient", "substrate_tilt"), {(), (1,), (2,)}),
+    ],
+)
+def test_an_effect_acts_whatever_is_neutral(names: tuple[str, ...], sets: set[tuple[int, ...]]) -> None:
+    assert set(neutral_sets(hypothesis_of(*names))) == sets
+
+
+@pytest.mark.parametrize(("name", "count"), [("stray_field_gradient", 14), ("surface_roughness", 63)])
+def test_what_is_without_effect_alone_does_not_act(name: str, count: int) -> None:
+    hypothesis = hypothesis_of(name)
+    sets = neutral_sets(hypothesis)
+    assert len(sets) == len(set(sets)) == count
+    for held in sets:
+        those = np.isin(np.arange(len(hypothesis.neutral)), held)
+        (effect,) = hypothesis.effects(np.where(those, 0.0, 0.5 * hypothesis.high))
+        assert not effect.is_neutral()
+
+
+def test_what_is_held_has_no_set() -> None:
+    hypothesis = hypothesis_of("substrate_tilt")
+    assert neutral_sets(hypothesis.held(np.array([True, False]))) == [()]
+
+
+@pytest.mark.parametrize("names", [("friction_coefficient",), ("stray_field_gradient",), ("surface_roughness",)])
+@pytest.mark.parametrize("asked", [(), (1,), (0, 1, 2)])
+def test_it_is_the_mean_evidence_of_all_sets(names: tuple[str, ...], asked: tuple[int, ...]) -> None:
+    hypothesis, rng = hypothesis_of(*names), np.random.default_rng(3)
+    count = len(hypothesis.neutral)
+    slopes = rng.normal(size=(40, count)) * np.array([20.0, 3.0, 8.0, 1.0, 5.0, 12.0, 2.0])[:count]
+    truth = np.where(np.isin(np.arange(count), asked), 0.4, 0.0)
+    seen = slopes @ truth + rng.normal(size=40)
+
+    def evidence(free: list[int]) -> tuple[float, float, np.ndarray]:
+        """Return ln of the integral over some parameters, the least objective, and where it is."""
+        table = slopes[:, free]
+        precision = table.T @ table + np.eye(len(free)) / PRIOR_SIGMA**2
+        best = np.linalg.solve(precision, table.T @ seen)
+        least = float(np.sum((seen - table @ best) ** 2) + np.sum((best / PRIOR_SIGMA) ** 2))
+        return -0.5 * least - 0.5 * float(np.linalg.slogdet(precision * PRIOR_SIGMA**2)[1]), least, best
+
+    all_free = list(range(count))
+    _, least, best = evidence(all_free)
+    fit = Fit(hypothesis, best, NOTHING, least, slopes, np.full(count, 0.01))
+    sets = neutral_sets(hypothesis)
+    each = [evidence([j for j in all_free if j not in held])[0] for held in sets]
+    expected = float(logsumexp(each)) - np.log(len(sets))
+    assert -0.5 * least + log_occam(fit, 1.0) == pytest.approx(expected, rel=1e-9, abs=1e-9)
