@@ -231,6 +231,8 @@ class Search:
         as_good = here + _AS_GOOD * max(self.fitter.nominal()[1] - here, 0.0)
         alike_kind = [len(c.names) == len(best.names) and cost < as_good for c, cost in zip(made, costs, strict=True)]
         near = [k for k in order if scores[k] < open_to or alike_kind[k]]
+        if len(near) == 1:
+            return made
         for n, k in enumerate(near[:_EQUALLY_FAR]):
             self.tell("fitting those near the best as far", n, min(len(near), _EQUALLY_FAR))
             made[k] = as_far(self.fitter, made[k], alike)
