@@ -9,7 +9,7 @@ from scipy.special import logsumexp
 from tumblers.diagnosis.comparison import Residual
 from tumblers.diagnosis.fit import Fit
 from tumblers.diagnosis.hypothesis import PRIOR_SIGMA, Hypothesis
-from tumblers.diagnosis.occam import log_occam, neutral_sets
+from tumblers.diagnosis.occam import log_occam, neutral_sets, unneeded
 from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects.catalogue import CATALOGUE
 
@@ -55,27 +55,43 @@ def test_what_is_held_has_no_set() -> None:
     assert neutral_sets(hypothesis.held(np.array([True, False]))) == [()]
 
 
-@pytest.mark.parametrize("names", [("friction_coefficient",), ("stray_field_gradient",), ("surface_roughness",)])
-@pytest.mark.parametrize("asked", [(), (1,), (0, 1, 2)])
-def test_it_is_the_mean_evidence_of_all_sets(names: tuple[str, ...], asked: tuple[int, ...]) -> None:
+@pytest.mark.parametrize(
+    ("names", "asked"),
+    [
+        (("friction_coefficient",), ()),
+        (("friction_coefficient",), (0,)),
+        (("stray_field_gradient",), (1,)),
+        (("surface_roughness",), (0, 1, 2)),
+        (("friction_coefficient", "substrate_tilt"), (0, 2)),
+    ],
+)
+@pytest.mark.parametrize("dispersion", [1.0, 8.0])
+def test_it_is_the_mean_evidence_of_all_sets(names: tuple[str, ...], asked: tuple[int, ...], dispersion: float) -> None:
     hypothesis, rng = hypothesis_of(*names), np.random.default_rng(3)
     count = len(hypothesis.neutral)
-    slopes = rng.normal(size=(40, count)) * np.array([20.0, 3.0, 8.0, 1.0, 5.0, 12.0, 2.0])[:count]
-    truth = np.where(np.isin(np.arange(count), asked), 0.4, 0.0)
-    seen = slopes @ truth + rng.normal(size=40)
+    slopes = np.sqrt(dispersion) * rng.normal(size=(40, count)) * (20.0, 3.0, 8.0, 1.0, 5.0, 12.0, 2.0)[:count]
+    seen = slopes @ np.where(np.isin(np.arange(count), asked), 0.4, 0.0) + np.sqrt(dispersion) * rng.normal(size=40)
 
-    def evidence(free: list[int]) -> tuple[float, float, np.ndarray]:
-        """Return ln of the integral over some parameters, the least objective, and where it is."""
+    def evidence(free: list[int]) -> float:
+        """Return ln of the integral over some parameters, the others being zero."""
         table = slopes[:, free]
-        precision = table.T @ table + np.eye(len(free)) / PRIOR_SIGMA**2
-        best = np.linalg.solve(precision, table.T @ seen)
-        least = float(np.sum((seen - table @ best) ** 2) + np.sum((best / PRIOR_SIGMA) ** 2))
-        return -0.5 * least - 0.5 * float(np.linalg.slogdet(precision * PRIOR_SIGMA**2)[1]), least, best
+        precision = table.T @ table / dispersion + np.eye(len(free)) / PRIOR_SIGMA**2
+        best = np.linalg.solve(precision, table.T @ seen / dispersion)
+        least = float(np.sum((seen - table @ best) ** 2)) / dispersion + float(np.sum((best / PRIOR_SIGMA) ** 2))
+        return -0.5 * least - 0.5 * float(np.linalg.slogdet(precision * PRIOR_SIGMA**2)[1])
 
-    all_free = list(range(count))
-    _, least, best = evidence(all_free)
-    fit = Fit(hypothesis, best, NOTHING, least, slopes, np.full(count, 0.01))
+    # The fit's objective does not temper the likelihood.
+    best = np.linalg.solve(slopes.T @ slopes + np.eye(count) / PRIOR_SIGMA**2, slopes.T @ seen)
+    cost = float(np.sum((seen - slopes @ best) ** 2) + np.sum((best / PRIOR_SIGMA) ** 2))
+    fit = Fit(hypothesis, best, NOTHING, cost, slopes, np.full(count, 0.01))
     sets = neutral_sets(hypothesis)
-    each = [evidence([j for j in all_free if j not in held])[0] for held in sets]
+    each = [evidence([j for j in range(count) if j not in held]) for held in sets]
     expected = float(logsumexp(each)) - np.log(len(sets))
-    assert -0.5 * least + log_occam(fit, 1.0) == pytest.approx(expected, rel=1e-9, abs=1e-9)
+    assert -0.5 * cost / dispersion + log_occam(fit, dispersion) == pytest.approx(expected, rel=1e-9, abs=1e-9)
+    likeliest = sets[int(np.argmax(each))]
+    assert np.flatnonzero(unneeded(fit, dispersion)).tolist() == sorted(likeliest)
+
+
+def test_an_effect_without_a_parameter_that_acts_has_the_empty_set() -> None:
+    gradient = hypothesis_of("stray_field_gradient")
+    assert neutral_sets(gradient.held(np.array([True, True, True, False]))) == [()]

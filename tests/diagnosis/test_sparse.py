@@ -11,6 +11,7 @@ from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.contender import Contender, of_fit
 from tumblers.diagnosis.fit import Fitter
 from tumblers.diagnosis.hypothesis import Hypothesis
+from tumblers.diagnosis.occam import unneeded
 from tumblers.diagnosis.own_noise import POLISH_POINTS, by_itself, settled_at
 from tumblers.diagnosis.pairs import Pairs
 from tumblers.diagnosis.simulator import Simulator
@@ -64,6 +65,8 @@ def test_what_is_not_needed_is_neutral_and_the_rest_is_fitted_farther() -> None:
 def test_what_is_needed_stays() -> None:
     fitter = ready(SubstrateTilt(slope_x_deg=3.0, slope_y_deg=5.0))
     fitted = by_itself(fitter, at(fitter, SubstrateTilt(slope_x_deg=2.5, slope_y_deg=5.5)), POLISH_POINTS)
+    assert fitted.fit is not None
+    assert not unneeded(fitted.fit, fitter.comparison.alike).any()
     (tilt,) = as_far(fitter, fitted, fitter.comparison.alike).effects
     assert isinstance(tilt, SubstrateTilt)
     assert min(tilt.slope_x_deg, tilt.slope_y_deg) > 2.0
@@ -76,7 +79,8 @@ def test_one_parameter_is_looked_for_on_its_line() -> None:
     assert stopped.fit is not None
     found = as_far(fitter, replace(of_fit(fitter, stopped.fit), settled=False), fitter.comparison.alike)
     assert found.settled
-    assert found.total < stopped.total - 20.0
+    # Farther than least squares go, which do not see that the noise changes.
+    assert found.total < by_itself(fitter, stopped, POLISH_POINTS).total
     assert found.fit is not None
     # Its own noise is what it is held against.
     assert found.total == pytest.approx(settled_at(fitter, found.fit.hypothesis, found.point).total)
@@ -96,5 +100,3 @@ def test_what_stands_in_anothers_place_is_exchanged_with_the_other_held() -> Non
     assert best.total < wrong.total - 500.0
     (found,) = [effect for effect in best.effects if isinstance(effect, SubstrateTilt)]
     assert found.slope_y_deg == pytest.approx(6.0, abs=1.0)
-    # The one that is kept is in every pair that was tried.
-    assert all("size_error" in pair.names for pair in pairs.likeliest_first())

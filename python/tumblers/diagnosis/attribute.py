@@ -29,7 +29,8 @@ from ..progress import OnPhase
 from .comparison import Comparison
 from .contender import Contender, of_fit, of_nominal
 from .fit import Fitter
-from .occam import SECOND, log_occam
+from .hypothesis import SECOND
+from .occam import log_occam
 from .predictive import is_right
 from .search import Search
 from .tolerated import is_tolerated

@@ -24,10 +24,10 @@ from .estimate import intervals
 from .fit import Fitter
 from .floor import TOLERANCES
 from .held_out import HeldOut, folds, held_out, is_foretold, shrink
+from .hypothesis import SECOND
 from .localise import localise
 from .loss import robust_cost
 from .next_trial import in_one_step, next_trials
-from .occam import SECOND
 from .overlay import overlays
 from .posterior import samples
 from .predictive import is_right

@@ -223,8 +223,17 @@ def against_the_best(fitter: Fitter, nominal: Contender, contenders: Sequence[Co
         near = contender.total <= best.total + NEAR
         other = beside(fitter, contender, best) if near else contender
         lent = other.total < contender.total and _says_the_same(fitter, contender, best, other)
-        made.append(other if lent else contender)
+        made.append(_with_slopes(fitter, other, best) if lent else contender)
     return made
+
+
+def _with_slopes(fitter: Fitter, lent: Contender, around: Contender) -> Contender:
+    """Return a contender against the noise around another, its derivatives against that too."""
+    if lent.fit is None:
+        return lent
+    fitter.take_likeliest_noise(lent.effects, around.effects)
+    fit = fitter.fit(lent.fit.hypothesis, lent.point, evaluations=1, steps=lent.fit.steps)
+    return replace(of_fit(fitter, fit), settled=lent.settled)
 
 
 def _says_the_same(fitter: Fitter, contender: Contender, best: Contender, lent: Contender) -> bool:

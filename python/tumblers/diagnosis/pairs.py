@@ -160,10 +160,11 @@ class Pairs:
         ]
 
     def _keep(self, hypothesis: Hypothesis, start: Floats) -> None:
+        """Fit a pair, and keep it where it is better than what is known of it, both against the noise of the moment."""
         contender = of_fit(self.fitter, self.fitter.fit(hypothesis, start, evaluations=_POINTS))
-        names = frozenset(hypothesis.names)
-        if names not in self._found or contender.total < self._found[names].total:
-            self._found[names] = contender
+        known = self._found.get(frozenset(hypothesis.names))
+        if known is None or known.fit is None or contender.cost < self.fitter.again(known.fit).cost:
+            self._found[frozenset(hypothesis.names)] = contender
 
 
 def _line(other: Hypothesis) -> list[Floats]:

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import replace
-from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,10 +20,9 @@ from .beginnings import MANY, beginning, from_beginnings, from_its_own_beginning
 from .contender import Contender, likeliest, likeliest_first, of_fit, of_nominal
 from .counterpart import counterparts
 from .fit import Fit, Fitter
-from .hypothesis import Hypothesis
+from .hypothesis import SECOND, Hypothesis
 from .least import least
 from .nearby import points_around
-from .occam import SECOND
 from .own_noise import (
     ENOUGH,
     IDLE_POINTS,
@@ -67,13 +65,13 @@ _FARTHER = 0.1
 _FIRSTS, _MORE_FIRSTS = 2, 5
 # Fits that are looked around, how many of the points around one are fitted on in so many trial points, and how often.
 _SHAKEN, _SHAKEN_FITS, _SHAKEN_POINTS, _SHAKES = 3, 2, 3, 2
-# Pairs whose beginnings are searched, and singles for which one of the best pair is exchanged.
-_PAIRS_REFINED, _EXCHANGED = 2, 6
+# Pairs whose beginnings are searched.
+_PAIRS_REFINED = 2
 # Another effect is fitted that, by the beginnings or from where it does what the best does, leaves no more than this
 # share of the objective that the best takes off; how many from there, and how often the best may change by it.
 _AS_GOOD, _COUNTERPARTS, _ROUNDS = 0.5, 3, 2
-# What is less than e^12 behind the best, or takes as much of the gap, is fitted as far, so many at most: a total moves
-# by some e^3 with the place around which its noise is measured, and by more with where a fit stopped.
+# What is less than about e^12 behind the best, or takes so large a share of the gap, is fitted as far, so many at most:
+# a total moves by some e^3 with the place around which its noise is measured, and by more with where a fit stopped.
 _OPEN, _EQUALLY_FAR = 12.0, 3
 
 
@@ -226,7 +224,7 @@ class Search:
         best, open_to = made[order[0]], scores[order[0]] + 2.0 * alike * _OPEN
         # All against one noise: what does as the best does may have stopped beside its valley.
         self.fitter.take_likeliest_noise(best.effects)
-        costs = [inf if c.fit is None else self.fitter.again(c.fit).cost + c.step_credit for c in made]
+        costs = [self.fitter.again(c.fit).cost + c.step_credit for c in made if c.fit is not None]
         here = costs[order[0]]
         as_good = here + _AS_GOOD * max(self.fitter.nominal()[1] - here, 0.0)
         alike_kind = [len(c.names) == len(best.names) and cost < as_good for c, cost in zip(made, costs, strict=True)]

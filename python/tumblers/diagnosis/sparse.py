@@ -2,8 +2,8 @@
 
 Where motion hops, least squares stop in a small minimum: in one parameter beside a narrow valley, in many with numbers
 that need not be there. What is left without these is fitted farther, in fewer derivatives. One parameter is looked for
-on a line around where it is, each point against the noise around itself, which is a part of the likelihood that least
-squares do not see. Of two effects that do the same neither must win by how far its fit went.
+on a line, at its end each point against the noise around itself: that is a part of the likelihood that least squares
+do not see. Of two effects that do the same neither must win by how far its fit went.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ from .contender import Contender, likeliest
 from .fit import Fitter
 from .hypothesis import Hypothesis
 from .least import least
-from .occam import neutral_sets
+from .occam import unneeded
 from .own_noise import POLISH_POINTS, against_itself, by_itself, settled_at
 
 __all__ = ["as_far"]
 
 Floats = NDArray[np.float64]
 
-# A parameter is needed that is so many standard deviations from neutral.
-_NEEDED = 2.0
+# How often a fit is taken on, each time against the noise around where it is.
+_TWICE = 2
 # Of one parameter, factors of its way from neutral that are tried first, and standard deviations around where it ends.
 _FACTORS, _AROUND = (0.8, 0.9, 0.95, 0.98, 1.0, 1.02, 1.05, 1.1, 1.25), (-1.0, -0.5, 0.5, 1.0)
 
@@ -45,17 +45,16 @@ def as_far(fitter: Fitter, contender: Contender, dispersion: float) -> Contender
     known = contender if contender.settled else by_itself(fitter, contender, evaluations=1)
     assert known.fit is not None
     hypothesis = known.fit.hypothesis
-    needed = np.abs(known.point) > _NEEDED * np.sqrt(np.diag(known.fit.covariance(dispersion)))
-    idle = [held for held in neutral_sets(hypothesis) if not any(needed[j] for j in held)]
-    those = np.zeros(len(known.point), dtype=bool)
-    those[list(idle[int(np.argmax([len(held) for held in idle]))])] = True
+    those = unneeded(known.fit, dispersion)
     less, start = hypothesis.held(those), np.where(those, 0.0, known.point)
     if less.free == 1:
-        ends = [_on_its_line(fitter, less, start, dispersion)]
+        end = _on_its_line(fitter, less, start, dispersion)
     else:
-        near = settled_at(fitter, less, start, POLISH_POINTS).point
-        ends = [near, fitter.descend(less, near, evaluations=POLISH_POINTS)[1]]
-    return likeliest([known, *(settled_at(fitter, hypothesis, end) for end in ends)])
+        end = start
+        for _ in range(_TWICE):
+            fitter.take_likeliest_noise(less.effects(end))
+            end = fitter.descend(less, end, evaluations=POLISH_POINTS)[1]
+    return likeliest([known, settled_at(fitter, hypothesis, end)])
 
 
 def _on_its_line(fitter: Fitter, hypothesis: Hypothesis, start: Floats, dispersion: float) -> Floats:

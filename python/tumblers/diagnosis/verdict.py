@@ -16,9 +16,11 @@ __all__ = ["judge", "refused", "ties"]
 
 # Where noise may explain it all, an effect is named only where that is less probable than this.
 _LEAST_DOUBT = 0.05
-# Evidence or likelihoods less than this factor apart, ln 20 and the e^3 by which they move within a deviation of
-# the best with where the noise is measured; or predictions that differ by less than this in sigmas.
-_TIED, _SAME = 6.0, 0.3
+# Evidence or likelihoods less than this factor apart: ln 20, and the e^3 by which they move within an interval with
+# where the noise is measured.
+_TIED = 6.0
+# Trials left out decide between what is less than this apart, ln 20: they lower what they refuse by little more.
+_UNDECIDED = 3.0
 
 
 def judge(comparison: Comparison, attribution: Attribution, foretold: bool) -> tuple[Verdict, Contender]:
@@ -62,7 +64,7 @@ def refused(
     """
     before: list[tuple[str, ...]] = []
     for contender in contenders:
-        if not contender.names or contenders[0].log_evidence - contender.log_evidence >= _TIED:
+        if not contender.names or contenders[0].log_evidence - contender.log_evidence >= _UNDECIDED:
             return ()
         if is_right(comparison, contender.residual) and stands(contender):
             return tuple(before)
@@ -94,8 +96,9 @@ def ties(comparison: Comparison, attribution: Attribution, chosen: Contender) ->
         put_in = [name for name in other.names if name not in chosen.names]
         if len(swapped) != 1:
             continue
-        apart = float(np.sqrt(np.mean((other.residual.over(trials) - said) ** 2)))
+        # What either would lose on average if the other were right.
+        apart = float(np.sum((other.residual.over(trials) - said) ** 2)) / (2.0 * attribution.dispersion)
         behind = chosen.log_likelihood - other.log_likelihood
-        if min(chosen.log_evidence - other.log_evidence, behind) < _TIED or apart < _SAME:
+        if min(chosen.log_evidence - other.log_evidence, behind, apart) < _TIED:
             out[swapped[0]].append(put_in[0])
     return {name: tuple(dict.fromkeys(others)) for name, others in out.items()}

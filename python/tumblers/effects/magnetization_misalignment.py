@@ -36,6 +36,7 @@ class MagnetizationMisalignment(Effect):
     """
 
     name: ClassVar[str] = "magnetization_misalignment"
+    # An error has no preferred direction: neither of its components is neutral by itself.
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(
             key="theta1_deg",
