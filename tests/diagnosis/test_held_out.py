@@ -174,11 +174,11 @@ def test_what_trials_left_out_refuse_is_named_after_a_tied_one(monkeypatch: pyte
     names = ["friction_coefficient", "friction_anisotropy"]
     before = diagnose(dataset, effects=names, jobs=1)
     first = before.ranking[0].effects
-    assert first == ("friction_coefficient",)
+    (other,) = {*names} - {*first}
     monkeypatch.setattr(_Conclusion, "stands", lambda self, contender: contender.names != first)
     after = diagnose(dataset, effects=names, jobs=1)
-    assert [effect.name for effect in after.effects] == ["friction_anisotropy"]
-    assert after.ranking[0].effects == ("friction_anisotropy",)
+    assert [effect.name for effect in after.effects] == [other]
+    assert after.ranking[0].effects == (other,)
     assert after.ranking[1].log_evidence == pytest.approx(before.ranking[0].log_evidence + log(REFUSED), abs=1e-6)
     assert any("refuse" in said for said in after.assumptions)
     monkeypatch.setattr(_Conclusion, "stands", lambda self, contender: False)

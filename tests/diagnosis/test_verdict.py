@@ -107,23 +107,27 @@ def test_between_what_evidence_ties_trials_left_out_decide(
 
 
 @pytest.mark.parametrize(
-    ("evidence", "behind", "sigmas", "tied"),
+    ("evidence", "behind", "sigmas", "tracked", "tied"),
     [
         # About as likely; the best is preferred for having fewer parameters.
-        (-8.0, 2.0, 1.8, True),
-        (-2.0, 20.0, 1.8, True),
-        (-8.0, 20.0, 1.8, False),
+        (-8.0, 2.0, 1.8, 0, True),
+        (-2.0, 20.0, 1.8, 0, True),
+        (-8.0, 20.0, 1.8, 0, False),
+        # The evidence of tracks is known less well.
+        (-5.0, 20.0, 1.8, 0, False),
+        (-5.0, 20.0, 1.8, COUNT, True),
+        (-8.0, 20.0, 1.8, COUNT, False),
         # The differences are 0.1 apart: what fits better does so by where its fit stopped.
-        (-8.0, 20.0, 0.9, True),
+        (-8.0, 20.0, 0.9, 0, True),
     ],
 )
 def test_what_is_about_as_likely_or_says_the_same_is_tied_however_parsimonious_the_best_is(
-    evidence: float, behind: float, sigmas: float, tied: bool
+    evidence: float, behind: float, sigmas: float, tracked: int, tied: bool
 ) -> None:
     best = contender("substrate_tilt", 0.8, 0.8)
     other = replace(contender("stray_field_gradient", sigmas, 0.1), log_likelihood=-behind, log_evidence=evidence)
     attribution = Attribution((best, other), 8.0, False)
-    comparison = SimpleNamespace(readers=(None,))
+    comparison = SimpleNamespace(readers=(None,), floors=(SimpleNamespace(tracked=tracked),))
     found = ties(comparison, attribution, best)  # type: ignore[arg-type]
     assert found == {"substrate_tilt": ("stray_field_gradient",) if tied else ()}
 

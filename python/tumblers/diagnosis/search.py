@@ -440,7 +440,9 @@ class Search:
         # However little the best leaves: against a sharper noise another may leave as little.
         if strong:
             found = _kept(settled(self.fitter, self._refined(found, _PAIRS_REFINED), self.tell), found)
-        return self._exchanged(found, singles)
+        # A pair that would not be named beside a single effect that leaves no gap is no answer.
+        named = found[0].total < singles[0].total - 2.0 * self.comparison.alike * SECOND
+        return self._exchanged(found, singles) if wanting or named else found
 
     def _exchanged(self, found: Sequence[Contender], singles: Sequence[Contender]) -> list[Contender]:
         """Exchange either effect of the best pair: one may be the answer to another that is wrong."""

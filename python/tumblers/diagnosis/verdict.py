@@ -16,11 +16,9 @@ __all__ = ["judge", "refused", "ties"]
 
 # Where noise may explain it all, an effect is named only where that is less probable than this.
 _LEAST_DOUBT = 0.05
-# Evidence or likelihoods less than this factor apart: ln 20, and the e^3 by which they move within an interval with
-# where the noise is measured.
-_TIED = 6.0
-# Trials left out decide between what is less than this apart, ln 20: they lower what they refuse by little more.
-_UNDECIDED = 3.0
+# Evidence or likelihoods less than this factor apart, ln 20; and that of tracks by e^3 more, by which it moves within
+# an interval with the point at which the noise is measured.
+_TIED, _ROUGH = 3.0, 3.0
 
 
 def judge(comparison: Comparison, attribution: Attribution, foretold: bool) -> tuple[Verdict, Contender]:
@@ -64,7 +62,7 @@ def refused(
     """
     before: list[tuple[str, ...]] = []
     for contender in contenders:
-        if not contender.names or contenders[0].log_evidence - contender.log_evidence >= _UNDECIDED:
+        if not contender.names or contenders[0].log_evidence - contender.log_evidence >= _TIED:
             return ()
         if is_right(comparison, contender.residual) and stands(contender):
             return tuple(before)
@@ -88,6 +86,7 @@ def ties(comparison: Comparison, attribution: Attribution, chosen: Contender) ->
     """
     trials = range(len(comparison.readers))
     said = chosen.residual.over(trials)
+    limit = _TIED + (_ROUGH if any(floor.tracked for floor in comparison.floors) else 0.0)
     out: dict[str, list[str]] = {name: [] for name in chosen.names}
     for other in attribution.contenders:
         if len(other.names) != len(chosen.names) or other.names == chosen.names:
@@ -99,6 +98,6 @@ def ties(comparison: Comparison, attribution: Attribution, chosen: Contender) ->
         # What either would lose on average if the other were right.
         apart = float(np.sum((other.residual.over(trials) - said) ** 2)) / (2.0 * attribution.dispersion)
         behind = chosen.log_likelihood - other.log_likelihood
-        if min(chosen.log_evidence - other.log_evidence, behind, apart) < _TIED:
+        if min(chosen.log_evidence - other.log_evidence, behind, apart) < limit:
             out[swapped[0]].append(put_in[0])
     return {name: tuple(dict.fromkeys(others)) for name, others in out.items()}
