@@ -21,17 +21,19 @@ from .own_noise import by_itself
 from .step_credit import step_credit
 from .thresholds import CLEAR
 
-__all__ = ["Pairs", "firsts", "single_of"]
+__all__ = ["AS_GOOD", "Pairs", "firsts", "single_of"]
 
 Floats = NDArray[np.float64]
 
+# Another effect is fitted in the place of one where it leaves no more than this share of what that takes off the
+# objective.
+AS_GOOD = 0.5
 # A first leaves no more than so much of the best one's objective beyond it.
 _NEAR_BEST = 0.5
 # Seconds that are fitted with each first; singles that are joined two and two, and joints that are fitted.
 _SECONDS, _JOINED, _JOINTS = 3, 4, 2
-# Shares of the way to either end of a range that are tried of what may stand in another's place; it is fitted where it
-# leaves no more than this share of what the other takes off the objective.
-_GRID, _AS_GOOD = (0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 1.0), 0.5
+# Shares of the way to either end of a range that are tried of what may stand in another's place.
+_GRID = (0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 1.0)
 # Trial points of a fit.
 _POINTS = 4
 
@@ -112,7 +114,7 @@ class Pairs:
         point = pair.point[[name == kept.names[0] for name, _ in pair.fit.hypothesis.keys]]
         self.fitter.take_likeliest_noise(pair.effects)
         still, whole = self.fitter.residuals(kept, [point])[0], self.fitter.again(pair.fit)
-        limit = whole.cost + _AS_GOOD * max(self.fitter.cost(still, point) - whole.cost, 0.0)
+        limit = whole.cost + AS_GOOD * max(self.fitter.cost(still, point) - whole.cost, 0.0)
         tried: list[tuple[float, int, Hypothesis, Floats]] = []
         for other in self._seconds(singles):
             if other.names[0] in pair.names:

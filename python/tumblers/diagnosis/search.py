@@ -36,7 +36,7 @@ from .own_noise import (
     settled,
     settled_at,
 )
-from .pairs import Pairs, firsts, single_of
+from .pairs import AS_GOOD, Pairs, firsts, single_of
 from .predictive import is_right, mean_square
 from .sparse import as_far
 from .thresholds import CLEAR, beyond_thresholds
@@ -67,11 +67,11 @@ _FIRSTS, _MORE_FIRSTS = 2, 5
 _SHAKEN, _SHAKEN_FITS, _SHAKEN_POINTS, _SHAKES = 3, 2, 3, 2
 # Pairs whose beginnings are searched.
 _PAIRS_REFINED = 2
-# Another effect is fitted that, by the beginnings or from where it does what the best does, leaves no more than this
-# share of the objective that the best takes off; how many from there, and how often the best may change by it.
-_AS_GOOD, _COUNTERPARTS, _ROUNDS = 0.5, 3, 2
-# What is less than about e^12 behind the best, or takes so large a share of the gap, is fitted as far, so many at most:
-# a total moves by some e^3 with the place around which its noise is measured, and by more with where a fit stopped.
+# Other effects that are fitted from where they do what the best does, and how often the best may change by it, or by
+# an exchange.
+_COUNTERPARTS, _ROUNDS = 3, 2
+# What is less than about e^12 behind the best, or as good by `AS_GOOD`, is fitted as far, so many at most: a total moves
+# by some e^3 with the place around which its noise is measured, and by more with where a fit stopped.
 _OPEN, _EQUALLY_FAR = 12.0, 3
 
 
@@ -226,7 +226,7 @@ class Search:
         self.fitter.take_likeliest_noise(best.effects)
         costs = [self.fitter.again(c.fit).cost + c.step_credit for c in made if c.fit is not None]
         here = costs[order[0]]
-        as_good = here + _AS_GOOD * max(self.fitter.nominal()[1] - here, 0.0)
+        as_good = here + AS_GOOD * max(self.fitter.nominal()[1] - here, 0.0)
         alike_kind = [len(c.names) == len(best.names) and cost < as_good for c, cost in zip(made, costs, strict=True)]
         near = [k for k in order if scores[k] < open_to or alike_kind[k]]
         if len(near) == 1:
@@ -272,7 +272,7 @@ class Search:
         for k, contender in enumerate(made):
             if k == 0 or contender.free > 1 or contender.names in refined:
                 continue
-            wanted = (1.0 - _AS_GOOD) * (beginning(self.fitter, contender) - goal)
+            wanted = (1.0 - AS_GOOD) * (beginning(self.fitter, contender) - goal)
             if promise(self.fitter, contender, self.seed) > max(CLEAR, wanted):
                 other = from_beginnings(self.fitter, contender, self.possible, self.seed)
                 made[k] = by_itself(self.fitter, other, IDLE_POINTS)
@@ -302,7 +302,7 @@ class Search:
             those = counterparts(self.fitter, best, kind, self.possible)
             # All against the noise around the contender.
             nominal, here = self.fitter.nominal()[1], self.fitter.again(best.fit).cost + best.step_credit
-            worst = here + _AS_GOOD * max(nominal - here, 0.0)
+            worst = here + AS_GOOD * max(nominal - here, 0.0)
             near = [c for c in those if c.cost < worst][:_COUNTERPARTS]
             fits = [self.fitter.fit(c.hypothesis, c.point, evaluations=_POINTS) for c in near]
             for fit in [fit for fit in fits if self._is_better(fit, made.get(frozenset(fit.hypothesis.names)))]:
