@@ -57,7 +57,7 @@ def test_what_is_not_needed_is_neutral_and_the_rest_is_fitted_farther() -> None:
     (gradient,) = found.effects
     assert isinstance(gradient, StrayFieldGradient)
     assert gradient.gradient_T_per_m[0] == gradient.gradient_T_per_m[2] == 0.0
-    # As good as from the truth, and not as likely as it by less than can be told.
+    # Likelier than the truth itself, as a fit is; and from the truth it ends about as well.
     assert found.total < at(fitter, truth).total
     assert found.total == pytest.approx(as_far(fitter, at(fitter, truth), fitter.comparison.alike).total, abs=CLEAR)
 

@@ -70,8 +70,8 @@ _PAIRS_REFINED = 2
 # Other effects that are fitted from where they do what the best does, and how often the best may change by it, or by
 # an exchange.
 _COUNTERPARTS, _ROUNDS = 3, 2
-# What is less than about e^12 behind the best, or as good by `AS_GOOD`, is fitted as far, so many at most: a total moves
-# by some e^3 with the place around which its noise is measured, and by more with where a fit stopped.
+# What is less than about e^12 behind the best, or as good by `AS_GOOD`, is fitted as far, so many at most: a total
+# moves by some e^3 with the place around which its noise is measured, and by more with where a fit stopped.
 _OPEN, _EQUALLY_FAR = 12.0, 3
 
 

@@ -25,7 +25,7 @@ __all__ = ["as_far"]
 Floats = NDArray[np.float64]
 
 # How often a fit is taken on, each time against the noise around where it is.
-_TWICE = 2
+_ROUNDS = 2
 # Of one parameter, factors of its way from neutral that are tried first, and standard deviations around where it ends.
 _FACTORS, _AROUND = (0.8, 0.9, 0.95, 0.98, 1.0, 1.02, 1.05, 1.1, 1.25), (-1.0, -0.5, 0.5, 1.0)
 
@@ -51,7 +51,7 @@ def as_far(fitter: Fitter, contender: Contender, dispersion: float) -> Contender
         end = _on_its_line(fitter, less, start, dispersion)
     else:
         end = start
-        for _ in range(_TWICE):
+        for _ in range(_ROUNDS):
             fitter.take_likeliest_noise(less.effects(end))
             end = fitter.descend(less, end, evaluations=POLISH_POINTS)[1]
     return likeliest([known, settled_at(fitter, hypothesis, end)])
