@@ -12,7 +12,7 @@ from numpy.testing import assert_array_equal
 
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.contender import Contender, of_fit, of_nominal
-from tumblers.diagnosis.counterpart import counterparts
+from tumblers.diagnosis.counterpart import counterparts, with_counterparts
 from tumblers.diagnosis.fit import Fitter
 from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.own_noise import settled_at
@@ -92,7 +92,7 @@ def test_a_search_keeps_what_does_the_same_better_than_the_best_does() -> None:
     assert gradient.fit is not None
     # As a search leaves it that went astray.
     idle = of_fit(search.fitter, search.fitter.again(replace(gradient.fit, point=0.02 * gradient.point)))
-    made = search._with_counterparts([tilt, idle])
+    made = with_counterparts(search.fitter, [tilt, idle], search.possible, quiet)
     gradient = next(contender for contender in made if contender.names == ("stray_field_gradient",))
     assert idle.total > tilt.total
     assert gradient.total < idle.total - 150.0
@@ -105,7 +105,7 @@ def test_a_search_asks_at_its_end_what_else_does_what_its_leader_does(monkeypatc
         asked.append((contender.names, kind.name))
         return counterparts(fitter, contender, kind, possible)
 
-    monkeypatch.setattr("tumblers.diagnosis.search.counterparts", spied)
+    monkeypatch.setattr("tumblers.diagnosis.counterpart.counterparts", spied)
     found = {c.names: c.total for c in search.contenders()}
     # Which of the two leads is up to the noise: they do the same.
     same = ("substrate_tilt", "stray_field_gradient")

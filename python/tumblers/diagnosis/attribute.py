@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 from ..effects.base import Effect
 from ..progress import OnPhase
 from .comparison import Comparison
+from .conclusion import in_steps_of
 from .contender import Contender, of_fit, of_nominal
 from .fit import Fitter
 from .hypothesis import SECOND
@@ -132,12 +133,13 @@ def attribute(
         Of the further starts.
     """
     fitter = Fitter(comparison)
-    search = Search(fitter, kinds, on_phase or (lambda _phase, _done, _total: None), seed)
+    tell = on_phase or (lambda _phase, _done, _total: None)
+    search = Search(fitter, kinds, tell, seed)
     contenders = search.contenders()
     right = _nominal_is_right(fitter)
     ranked, dispersion = _ranked(contenders, comparison, search.names, right)
     while not comparison.simulator.resolves(ranked[0].effects):
-        contenders = search.in_steps_of(ranked[0], contenders)
+        contenders = in_steps_of(fitter, ranked[0], contenders, tell)
         right = _nominal_is_right(fitter)
         ranked, dispersion = _ranked(contenders, comparison, search.names, right)
     if right:

@@ -1,4 +1,4 @@
-"""`counterparts`: the points at which other effects do what one effect does.
+"""`with_counterparts`: other effects from where they do what the best one does.
 
 Where an effect is strong, another that does the same has its best in a narrow valley far from neutral, which points
 over the range miss. But what the first does is known, also at a share s of its strength, where both are linear: with r
@@ -10,23 +10,30 @@ t_s = r(R + s E) - r(R),      q_s = argmin_q |t_s - s J q|²
 
 is about where the other does what the first does (Gauss and Newton's step from neutral, towards another model's motion
 and not towards the data).
+
+What does about as well there is fitted to the data from there: of two effects that do the same, neither is to lead
+because the other was looked for in the wrong place.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..effects.base import Effect
-from .contender import Contender
-from .fit import Fitter
+from ..progress import OnPhase
+from .contender import Contender, likeliest, likeliest_first
+from .fit import Fit, Fitter
 from .hypothesis import Hypothesis
+from .own_noise import ENOUGH, IDLE_POINTS, against_itself, settled_at
+from .pairs import AS_GOOD
+from .predictive import is_wanting
 from .step_credit import step_credit
 
-__all__ = ["Counterpart", "counterparts"]
+__all__ = ["Counterpart", "counterparts", "with_counterparts"]
 
 Floats = NDArray[np.float64]
 
@@ -36,6 +43,8 @@ _SHARES = (0.05, 0.25, 1.0)
 _STEP, _MOST_FREE = 1e-2, 5
 # Where the other explains less of what the first does (of its sum of squares), it is no counterpart. A choice.
 _EXPLAINED = 0.5
+# Counterparts of one effect that are fitted, in so many trial points, and how often the best may change by it.
+_FITTED, _POINTS, _ROUNDS = 3, 4, 2
 
 
 class Counterpart(NamedTuple):
@@ -54,6 +63,64 @@ class Counterpart(NamedTuple):
     cost: float
     hypothesis: Hypothesis
     point: Floats
+
+
+def with_counterparts(
+    fitter: Fitter, contenders: Iterable[Contender], possible: Sequence[Hypothesis], tell: OnPhase
+) -> list[Contender]:
+    """Fit other effects from where they do what the best, or one of the best pair, does; the likeliest first.
+
+    A pair may lead that adds less than a second effect must: where the best single effect leaves no gap, it is the
+    one that others have to do the same as.
+
+    Parameters
+    ----------
+    fitter
+        Of the dataset.
+    contenders
+        One or two effects each, at least one of them single.
+    possible
+        Every effect by itself.
+    tell
+        Is told the phase, how much of it is done, and of how much.
+    """
+    made = {frozenset(contender.names): contender for contender in contenders}
+    for k in range(_ROUNDS):
+        tell("what else does the same", k, _ROUNDS)
+        best, single = likeliest(made.values()), likeliest(c for c in made.values() if len(c.names) == 1)
+        whole = best is single or is_wanting(fitter.comparison, single.residual)
+        for contender in [best] if whole else [best, single]:
+            _add_counterparts(fitter, contender, possible, made)
+        if likeliest(made.values()) is best:
+            break
+    return likeliest_first(made.values())
+
+
+def _add_counterparts(
+    fitter: Fitter, best: Contender, possible: Sequence[Hypothesis], made: dict[frozenset[str], Contender]
+) -> None:
+    """Keep the counterparts of a contender that are better than what is known of the same effects."""
+    assert best.fit is not None
+    for kind in best.fit.hypothesis.kinds:
+        those = counterparts(fitter, best, kind, possible)
+        # All against the noise around the contender.
+        nominal, here = fitter.nominal()[1], fitter.again(best.fit).cost + best.step_credit
+        worst = here + AS_GOOD * max(nominal - here, 0.0)
+        near = [c for c in those if c.cost < worst][:_FITTED]
+        fits = [fitter.fit(c.hypothesis, c.point, evaluations=_POINTS) for c in near]
+        for fit in [fit for fit in fits if _is_better(fitter, fit, made.get(frozenset(fit.hypothesis.names)))]:
+            # Each against its own.
+            other = settled_at(fitter, fit.hypothesis, fit.point, IDLE_POINTS, fit.steps)
+            known = made.get(frozenset(other.names))
+            if known is not None and known.fit is not None and not known.settled:
+                known = against_itself(fitter, known.fit)
+            if known is None or other.total < known.total - ENOUGH:
+                made[frozenset(other.names)] = other
+
+
+def _is_better(fitter: Fitter, fit: Fit, known: Contender | None) -> bool:
+    """Return whether a fit is better than what is known of the same effects, against the noise of the moment."""
+    return known is None or known.fit is None or fit.cost <= fitter.again(known.fit).cost - ENOUGH
 
 
 def counterparts(

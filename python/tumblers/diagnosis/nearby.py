@@ -1,32 +1,90 @@
-"""Points around a fit: where motion hops the objective is rough, and a better point may be near."""
+"""Around a fit: where motion hops, the objective is rough, and a better point may be near.
+
+A small change of a parameter changes the differences by steps there, and least squares stop in small local minima.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .fit import Fit
+from ..progress import OnPhase
+from .contender import Contender, likeliest_first
+from .fit import Fit, Fitter
+from .least import least
+from .own_noise import ENOUGH, settled_at
+from .thresholds import CLEAR
 
-__all__ = ["points_around"]
+__all__ = ["all_shaken", "shaken"]
 
 Floats = NDArray[np.float64]
 
-# How many, and their spread in standard deviations and in shares of the ranges.
+# How many points, and their spread in standard deviations and in shares of the ranges.
 _POINTS, _SPREADS, _SHARES = 18, (1.0, 2.0, 4.0), (0.02, 0.05, 0.1)
+# Fits that are looked around, how many of the points around one are fitted on in so many trial points, and how often.
+_SHAKEN, _FITS, _FIT_POINTS, _SHAKES = 3, 2, 3, 2
 
 
-def points_around(fit: Fit, dispersion: float, rng: np.random.Generator) -> list[Floats]:
-    """Return points around a fit, within the range.
+def all_shaken(fitter: Fitter, contenders: Sequence[Contender], seed: int, tell: OnPhase) -> list[Contender]:
+    """Look around the best, and around those that are about as good: none is to lead because it alone was.
 
     Parameters
     ----------
-    fit
-        A hypothesis at its best.
-    dispersion
-        How many numbers count as one.
-    rng
-        Where they come from.
+    fitter
+        Of the dataset.
+    contenders
+        The likeliest first; those are looked around that are settled.
+    seed
+        Of the points.
+    tell
+        Is told the phase, how much of it is done, and of how much.
     """
+    near = contenders[0].total + CLEAR
+    chosen = [k for k, contender in enumerate(contenders) if contender.settled and contender.total < near]
+    made = list(contenders)
+    for k in chosen[:_SHAKEN]:
+        made[k] = shaken(fitter, contenders[k], seed, tell)
+    return likeliest_first(made)
+
+
+def shaken(fitter: Fitter, contender: Contender, seed: int, tell: OnPhase) -> Contender:
+    """Look around a fit for a better one, and return it or the fit as it is.
+
+    Parameters
+    ----------
+    fitter
+        Of the dataset.
+    contender
+        One or two effects.
+    seed
+        Of the points.
+    tell
+        Is told the phase, how much of it is done, and of how much.
+    """
+    rng, best = np.random.default_rng(seed), contender
+    for k in range(_SHAKES):
+        tell("around the best", k, _SHAKES)
+        assert best.fit is not None
+        hypothesis = best.fit.hypothesis
+        fitter.take_likeliest_noise(best.effects)
+        points = _points_around(best.fit, fitter.comparison.alike, rng)
+        starts = [point for _, point in least(fitter, hypothesis, points, _FITS)]
+        ends = [fitter.descend(hypothesis, start, evaluations=_FIT_POINTS) for start in starts]
+        cost, point = min(ends, key=lambda end: end[0])
+        # What is clearly worse against this noise is not looked at against its own.
+        if cost > fitter.again(best.fit).cost + CLEAR:
+            break
+        other = settled_at(fitter, hypothesis, point)
+        if other.total > best.total - ENOUGH:
+            break
+        best = other
+    return best
+
+
+def _points_around(fit: Fit, dispersion: float, rng: np.random.Generator) -> list[Floats]:
+    """Return points around a fit, within the range, the dispersion being how many numbers count as one."""
     count = len(fit.point)
     root = np.linalg.cholesky(fit.covariance(dispersion))
     spreads = [*(spread * root for spread in _SPREADS), *(share * np.eye(count) for share in _SHARES)]

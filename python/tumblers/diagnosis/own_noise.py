@@ -24,7 +24,9 @@ from .thresholds import CLEAR
 __all__ = [
     "ENOUGH",
     "IDLE_POINTS",
+    "MOST_OWN",
     "NEAR",
+    "OWN",
     "POLISH_POINTS",
     "again",
     "against_itself",
@@ -42,7 +44,9 @@ Floats = NDArray[np.float64]
 IDLE_POINTS, POLISH_POINTS = 2, 6
 # What takes so much off the objective asks for another round.
 ENOUGH = 5.0
-# How many fits are held against their own noise, and how often it is measured after a further fit at most.
+# Effects that are held against their own noise before one counts as best, and how many where that gains much.
+OWN, MOST_OWN = 4, 6
+# How many other fits are held so, and how often it is measured after a further fit at most.
 _SETTLED, _ROUNDS = 2, 2
 # What another may gain by its own noise, over the most that one has gained: at one threshold, in a dataset whose truth
 # was known, five effects gained 640 to 790.

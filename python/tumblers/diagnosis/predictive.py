@@ -15,10 +15,12 @@ from .comparison import Comparison, Residual
 from .loss import huber, robust_cost
 from .reading import SLID, reached
 
-__all__ = ["is_right", "mean_square", "mean_squares"]
+__all__ = ["is_right", "is_wanting", "mean_square", "mean_squares"]
 
 # A right model's mean square over all numbers, and in its worst trial.
 _EXPLAINED, _WORST = 1.25, 2.0
+# A gap is left where the mean square stays above this against the likeliest noise.
+_WANTING = 1.1
 # Of few numbers noise alone leaves more than so much once in a thousand trials or outcomes: some hundred are looked at.
 _RARE = 1e-3
 # What a climb or a slide that was seen costs a model that stays where it is, within a fiftieth of the way: the smooth
@@ -40,6 +42,11 @@ def is_right(comparison: Comparison, residual: Residual) -> bool:
     """Whether a hypothesis passes the test."""
     trials = bool(np.all(mean_squares(residual) <= _worst(np.asarray(comparison.sizes))))
     return trials and mean_square(comparison, residual) <= _EXPLAINED and _outcomes_agree(comparison, residual)
+
+
+def is_wanting(comparison: Comparison, residual: Residual) -> bool:
+    """Whether a hypothesis leaves a gap that something else may close, even where it passes the test."""
+    return mean_square(comparison, residual) > _WANTING
 
 
 def _worst(count: NDArray[np.int_]) -> NDArray[np.float64]:

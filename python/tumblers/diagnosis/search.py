@@ -17,28 +17,15 @@ from numpy.typing import NDArray
 from ..effects.base import Effect
 from ..progress import OnPhase
 from .beginnings import MANY, beginning, from_beginnings, from_its_own_beginning, promise
+from .conclusion import concluded, resolved
 from .contender import Contender, likeliest, likeliest_first, of_fit, of_nominal
-from .counterpart import counterparts
-from .fit import Fit, Fitter
+from .counterpart import with_counterparts
+from .fit import Fitter
 from .hypothesis import SECOND, Hypothesis
-from .least import least
-from .nearby import points_around
-from .own_noise import (
-    ENOUGH,
-    IDLE_POINTS,
-    NEAR,
-    POLISH_POINTS,
-    again,
-    against_itself,
-    against_the_best,
-    by_itself,
-    each_by_itself,
-    settled,
-    settled_at,
-)
+from .nearby import all_shaken, shaken
+from .own_noise import IDLE_POINTS, MOST_OWN, NEAR, OWN, POLISH_POINTS, again, by_itself, settled
 from .pairs import AS_GOOD, Pairs, firsts, single_of
-from .predictive import is_right, mean_square
-from .sparse import as_far
+from .predictive import is_right, is_wanting
 from .thresholds import CLEAR, beyond_thresholds
 
 __all__ = ["Search"]
@@ -51,10 +38,6 @@ _WORTH = 9.0
 # Trial points of a fit: of an effect that leads after the scan (so many do), and of another (where nothing is better
 # than neutral only the derivatives are taken).
 _LEADING, _LEADING_POINTS, _POINTS = 6, 6, 4
-# Effects that are held against their own noise before one counts as best, and how many where that gains much.
-_OWN, _MOST_OWN = 4, 6
-# A gap is left where the mean square stays above this against the likeliest noise.
-_WANTING = 1.1
 # Hypotheses that are fitted again from the beginnings of the trials; and of those whose points over the range follow
 # the beginnings better than their fit does.
 _REFINED, _PROMISING = 2, 4
@@ -63,16 +46,10 @@ _REFINED, _PROMISING = 2, 4
 _FARTHER = 0.1
 # Effects to which a second is added: the farther ones only where the best leaves a gap, more only where all pairs do.
 _FIRSTS, _MORE_FIRSTS = 2, 5
-# Fits that are looked around, how many of the points around one are fitted on in so many trial points, and how often.
-_SHAKEN, _SHAKEN_FITS, _SHAKEN_POINTS, _SHAKES = 3, 2, 3, 2
 # Pairs whose beginnings are searched.
 _PAIRS_REFINED = 2
-# Other effects that are fitted from where they do what the best does, and how often the best may change by it, or by
-# an exchange.
-_COUNTERPARTS, _ROUNDS = 3, 2
-# What is less than about e^12 behind the best, or as good by `AS_GOOD`, is fitted as far, so many at most: a total
-# moves by some e^3 with the place around which its noise is measured, and by more with where a fit stopped.
-_OPEN, _EQUALLY_FAR = 12.0, 3
+# How often the best may change by an exchange.
+_ROUNDS = 2
 
 
 class Search:
@@ -118,15 +95,16 @@ class Search:
         singles = self._singles(nominal)
         if not singles or singles[0].total > nominal.total - self.worth:
             return [nominal, *singles]
-        nominal, singles = self._resolved(nominal, singles)
+        nominal, singles = resolved(self.fitter, nominal, singles, self.tell)
         if not is_right(self.comparison, nominal.residual):
             # Only in shorter steps it shows that it is wrong.
             return self._of_strong(nominal)
-        singles = settled(self.fitter, singles, self.tell, _OWN, _MOST_OWN)
+        singles = settled(self.fitter, singles, self.tell, OWN, MOST_OWN)
         if singles[0].total > nominal.total - self.worth:
-            return self._concluded(nominal, singles)
-        singles = self._all_shaken(singles)
-        return self._concluded(nominal, self._with_shaken_pair(singles, self._pairs(singles, strong=False)))
+            return concluded(self.fitter, nominal, singles, self.tell)
+        singles = all_shaken(self.fitter, singles, self.seed, self.tell)
+        made = self._with_shaken_pair(singles, self._pairs(singles, strong=False))
+        return concluded(self.fitter, nominal, made, self.tell)
 
     def _of_strong(self, nominal: Contender) -> list[Contender]:
         """Search in longer steps, and hold what is found in the right ones.
@@ -140,7 +118,7 @@ class Search:
             return [nominal]
         made = self._in_short_steps(found)
         self.fitter.take_likeliest_noise(())
-        return self._concluded(of_nominal(self.fitter), made)
+        return concluded(self.fitter, of_nominal(self.fitter), made, self.tell)
 
     def _in_short_steps(self, found: Sequence[Contender]) -> list[Contender]:
         """Hold what was found in longer steps in those of the moment, and fit the best on."""
@@ -150,7 +128,7 @@ class Search:
         near = found[0].total + NEAR
         held = again(self.fitter, [c if c.total <= near else replace(c, settled=False) for c in found])
         made = settled(self.fitter, [replace(contender, settled=False) for contender in held], self.tell)
-        made = likeliest_first([self._shaken(made[0]), *made[1:]])
+        made = likeliest_first([shaken(self.fitter, made[0], self.seed, self.tell), *made[1:]])
         if len(made[0].names) == 1:
             return made
         single = likeliest(contender for contender in made if len(contender.names) == 1)
@@ -161,13 +139,13 @@ class Search:
         singles, worth = self._singles(nominal), nominal.total - self.worth
         if not singles or singles[0].total > worth:
             return singles
-        nominal, singles = self._resolved(nominal, singles)
-        singles = settled(self.fitter, singles, self.tell, _OWN, _MOST_OWN)
-        singles = self._all_shaken(singles)
+        nominal, singles = resolved(self.fitter, nominal, singles, self.tell)
+        singles = settled(self.fitter, singles, self.tell, OWN, MOST_OWN)
+        singles = all_shaken(self.fitter, singles, self.seed, self.tell)
         pairs: list[Contender] = []
         refined: set[tuple[str, ...]] = set()
         worth = nominal.total - self.worth
-        if self._is_wanting(singles[0]):
+        if is_wanting(self.comparison, singles[0].residual):
             refined = {singles[k].names for k in _to_refine(singles, _REFINED)}
             singles = settled(self.fitter, self._refined(singles, _REFINED), self.tell)
         if singles[0].total <= worth:
@@ -184,67 +162,14 @@ class Search:
             singles = settled(self.fitter, self._elsewhere(singles, refined), self.tell)
         made = self._with_shaken_pair(singles, pairs) if singles[0].total <= worth else [*singles, *pairs]
         made = likeliest_first(made)
-        return self._with_counterparts(made) if made[0].total <= worth else made
+        return with_counterparts(self.fitter, made, self.possible, self.tell) if made[0].total <= worth else made
 
     def _with_shaken_pair(self, singles: Sequence[Contender], pairs: Sequence[Contender]) -> list[Contender]:
         """Look around the best pair, and for its best single effect again from there."""
         if not pairs:
             return list(singles)
-        pairs = likeliest_first([self._shaken(pairs[0]), *pairs[1:]])
+        pairs = likeliest_first([shaken(self.fitter, pairs[0], self.seed, self.tell), *pairs[1:]])
         return likeliest_first([self._nested(pairs[0], singles[0]), *singles[1:], *pairs])
-
-    def in_steps_of(self, leader: Contender, contenders: Sequence[Contender]) -> list[Contender]:
-        """Return the nominal model and the others again, in steps that are short enough for one of them.
-
-        Parameters
-        ----------
-        leader
-            One of them.
-        contenders
-            What `contenders` returned.
-        """
-        nominal = next(c for c in contenders if not c.names)
-        others = [c for c in contenders if c.names and c.names != leader.names]
-        return self._concluded(nominal, [leader, *others])
-
-    def _concluded(self, nominal: Contender, contenders: Sequence[Contender]) -> list[Contender]:
-        """Return the nominal model and all others, each against the noise that counts."""
-        while True:
-            nominal, made = self._resolved(nominal, contenders)
-            contenders = self._equally_far(each_by_itself(self.fitter, made, self.tell))
-            # Against its own noise another may lead, which asks for shorter steps still.
-            if self.comparison.simulator.resolves(contenders[0].effects):
-                return against_the_best(self.fitter, nominal, contenders)
-
-    def _equally_far(self, contenders: Sequence[Contender]) -> list[Contender]:
-        """Fit what may be as good as the best as far as that, without what it does not need."""
-        alike, made = self.comparison.alike, list(contenders)
-        scores = [c.total + 2.0 * alike * SECOND * (len(c.names) - 1) for c in made]
-        order = np.argsort(scores, kind="stable").tolist()
-        best, open_to = made[order[0]], scores[order[0]] + 2.0 * alike * _OPEN
-        # All against one noise: what does as the best does may have stopped beside its valley.
-        self.fitter.take_likeliest_noise(best.effects)
-        costs = [self.fitter.again(c.fit).cost + c.step_credit for c in made if c.fit is not None]
-        here = costs[order[0]]
-        as_good = here + AS_GOOD * max(self.fitter.nominal()[1] - here, 0.0)
-        alike_kind = [len(c.names) == len(best.names) and cost < as_good for c, cost in zip(made, costs, strict=True)]
-        near = [k for k in order if scores[k] < open_to or alike_kind[k]]
-        if len(near) == 1:
-            return made
-        for n, k in enumerate(near[:_EQUALLY_FAR]):
-            self.tell("fitting those near the best as far", n, min(len(near), _EQUALLY_FAR))
-            made[k] = as_far(self.fitter, made[k], alike)
-        return likeliest_first(made)
-
-    def _resolved(self, nominal: Contender, contenders: Sequence[Contender]) -> tuple[Contender, list[Contender]]:
-        """Return the nominal model and the others in steps that are short enough for the leader."""
-        made = list(contenders)
-        # What moves so in one step and not in half of it is no motion of the model, and speaks for nothing.
-        while self.comparison.halve_steps_for(made[0].effects):
-            self.fitter.take_likeliest_noise(())
-            nominal = of_nominal(self.fitter)
-            made = settled(self.fitter, again(self.fitter, made), self.tell, _OWN, _MOST_OWN)
-        return nominal, made
 
     def _far(self, singles: Sequence[Contender], refined: Collection[tuple[str, ...]]) -> list[Contender]:
         """Search far away for those that no local fit can be trusted with, but for those that were refined."""
@@ -279,45 +204,6 @@ class Search:
                 self.fitter.take_likeliest_noise(best.effects)
         return likeliest_first(made)
 
-    def _with_counterparts(self, contenders: Sequence[Contender]) -> list[Contender]:
-        """Fit other effects from where they do what the best, or one of the best pair, does.
-
-        A pair may lead that adds less than a second effect must: where the best single effect leaves no gap, it is the
-        one that others have to do the same as.
-        """
-        made = {frozenset(contender.names): contender for contender in contenders}
-        for k in range(_ROUNDS):
-            self.tell("what else does the same", k, _ROUNDS)
-            best, single = likeliest(made.values()), likeliest(c for c in made.values() if len(c.names) == 1)
-            for contender in [best] if best is single or self._is_wanting(single) else [best, single]:
-                self._add_counterparts(contender, made)
-            if likeliest(made.values()) is best:
-                break
-        return likeliest_first(made.values())
-
-    def _add_counterparts(self, best: Contender, made: dict[frozenset[str], Contender]) -> None:
-        """Keep the counterparts of a contender that are better than what is known of the same effects."""
-        assert best.fit is not None
-        for kind in best.fit.hypothesis.kinds:
-            those = counterparts(self.fitter, best, kind, self.possible)
-            # All against the noise around the contender.
-            nominal, here = self.fitter.nominal()[1], self.fitter.again(best.fit).cost + best.step_credit
-            worst = here + AS_GOOD * max(nominal - here, 0.0)
-            near = [c for c in those if c.cost < worst][:_COUNTERPARTS]
-            fits = [self.fitter.fit(c.hypothesis, c.point, evaluations=_POINTS) for c in near]
-            for fit in [fit for fit in fits if self._is_better(fit, made.get(frozenset(fit.hypothesis.names)))]:
-                # Each against its own.
-                other = settled_at(self.fitter, fit.hypothesis, fit.point, IDLE_POINTS, fit.steps)
-                known = made.get(frozenset(other.names))
-                if known is not None and known.fit is not None and not known.settled:
-                    known = against_itself(self.fitter, known.fit)
-                if known is None or other.total < known.total - ENOUGH:
-                    made[frozenset(other.names)] = other
-
-    def _is_better(self, fit: Fit, known: Contender | None) -> bool:
-        """Return whether a fit is better than what is known of the same effects, against the noise of the moment."""
-        return known is None or known.fit is None or fit.cost <= self.fitter.again(known.fit).cost - ENOUGH
-
     def _nested(self, pair: Contender, single: Contender) -> Contender:
         """Fit the best single effect again from where it is in a pair: alone it must not have been fitted less far."""
         if single.names[0] not in pair.names or pair.total > single.total - CLEAR:
@@ -343,10 +229,9 @@ class Search:
 
     def _is_enough(self, contenders: Sequence[Contender]) -> bool:
         best = likeliest(contenders)
-        return not self._is_wanting(best) or (len(best.names) > 1 and is_right(self.comparison, best.residual))
-
-    def _is_wanting(self, contender: Contender) -> bool:
-        return mean_square(self.comparison, contender.residual) > _WANTING
+        return not is_wanting(self.comparison, best.residual) or (
+            len(best.names) > 1 and is_right(self.comparison, best.residual)
+        )
 
     def _searched(self, nominal: Contender, singles: Sequence[Contender]) -> list[Contender]:
         """Fit effects of few parameters again from the best point on a line through their ranges."""
@@ -364,39 +249,6 @@ class Search:
                     other = of_fit(fitter, fitter.fit(hypothesis, point, evaluations=_LEADING_POINTS))
                     made[k] = likeliest([made[k], other])
         return made
-
-    def _all_shaken(self, contenders: Sequence[Contender]) -> list[Contender]:
-        """Look around the best, and around those that are about as good: none is to lead because it alone was."""
-        near = contenders[0].total + CLEAR
-        chosen = [k for k, contender in enumerate(contenders) if contender.settled and contender.total < near]
-        made = list(contenders)
-        for k in chosen[:_SHAKEN]:
-            made[k] = self._shaken(contenders[k])
-        return likeliest_first(made)
-
-    def _shaken(self, contender: Contender) -> Contender:
-        """Look around a fit for a better one, which small local minima keep least squares from.
-
-        Where motion hops, a small change of a parameter changes the differences by steps: the objective is rough.
-        """
-        rng, best = np.random.default_rng(self.seed), contender
-        for k in range(_SHAKES):
-            self.tell("around the best", k, _SHAKES)
-            assert best.fit is not None
-            hypothesis = best.fit.hypothesis
-            self.fitter.take_likeliest_noise(best.effects)
-            points = points_around(best.fit, self.comparison.alike, rng)
-            starts = [point for _, point in least(self.fitter, hypothesis, points, _SHAKEN_FITS)]
-            ends = [self.fitter.descend(hypothesis, start, evaluations=_SHAKEN_POINTS) for start in starts]
-            cost, point = min(ends, key=lambda end: end[0])
-            # What is clearly worse against this noise is not looked at against its own.
-            if cost > self.fitter.again(best.fit).cost + CLEAR:
-                break
-            other = settled_at(self.fitter, hypothesis, point)
-            if other.total > best.total - ENOUGH:
-                break
-            best = other
-        return best
 
     def _refined(self, contenders: Sequence[Contender], count: int) -> list[Contender]:
         """Fit the best so many again from points over their whole range, the beginnings of the trials first.
@@ -418,7 +270,7 @@ class Search:
         """Add a second effect to the best, beside pairs that are known; none where none shows."""
         pairs = Pairs(self.fitter, self.possible, self.hints, known)
         # A second effect shows beside the best one; beside the next best only where the best leaves a gap.
-        wanting = strong and self._is_wanting(singles[0])
+        wanting = strong and is_wanting(self.comparison, singles[0].residual)
         near = firsts(singles[: _FIRSTS if wanting else 1])
         for n, first in enumerate(near):
             self.tell("fitting pairs", n, len(near))

@@ -1,0 +1,112 @@
+"""`concluded`: every contender in the steps, against the noise, and fitted as far, that what is concluded asks for.
+
+The steps are short enough for the leader, who may change by it. What comes near the best is held against the noise
+around itself, what may be as good is fitted as far as the best, and what says the same is lent the best's noise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..progress import OnPhase
+from .contender import Contender, likeliest_first, of_nominal
+from .fit import Fitter
+from .hypothesis import SECOND
+from .own_noise import MOST_OWN, OWN, again, against_the_best, each_by_itself, settled
+from .pairs import AS_GOOD
+from .sparse import as_far
+
+__all__ = ["concluded", "in_steps_of", "resolved"]
+
+# What is less than about e^12 behind the best, or as good by `AS_GOOD`, is fitted as far, so many at most: a total
+# moves by some e^3 with the place around which its noise is measured, and by more with where a fit stopped.
+_OPEN, _EQUALLY_FAR = 12.0, 3
+
+
+def in_steps_of(fitter: Fitter, leader: Contender, contenders: Sequence[Contender], tell: OnPhase) -> list[Contender]:
+    """Return the nominal model and the others again, in steps that are short enough for one of them.
+
+    Parameters
+    ----------
+    fitter
+        Of the dataset.
+    leader
+        One of the contenders.
+    contenders
+        What `concluded` returned.
+    tell
+        Is told the phase, how much of it is done, and of how much.
+    """
+    nominal = next(c for c in contenders if not c.names)
+    others = [c for c in contenders if c.names and c.names != leader.names]
+    return concluded(fitter, nominal, [leader, *others], tell)
+
+
+def concluded(fitter: Fitter, nominal: Contender, contenders: Sequence[Contender], tell: OnPhase) -> list[Contender]:
+    """Return the nominal model and all others, each against the noise that counts.
+
+    Parameters
+    ----------
+    fitter
+        Of the dataset.
+    nominal
+        The nominal model.
+    contenders
+        The others, the likeliest first.
+    tell
+        Is told the phase, how much of it is done, and of how much.
+    """
+    while True:
+        nominal, made = resolved(fitter, nominal, contenders, tell)
+        contenders = _equally_far(fitter, each_by_itself(fitter, made, tell), tell)
+        # Against its own noise another may lead, which asks for shorter steps still.
+        if fitter.comparison.simulator.resolves(contenders[0].effects):
+            return against_the_best(fitter, nominal, contenders)
+
+
+def resolved(
+    fitter: Fitter, nominal: Contender, contenders: Sequence[Contender], tell: OnPhase
+) -> tuple[Contender, list[Contender]]:
+    """Return the nominal model and the others in steps that are short enough for the leader.
+
+    Parameters
+    ----------
+    fitter
+        Of the dataset.
+    nominal
+        The nominal model.
+    contenders
+        The others, the likeliest first.
+    tell
+        Is told the phase, how much of it is done, and of how much.
+    """
+    made = list(contenders)
+    # What moves so in one step and not in half of it is no motion of the model, and speaks for nothing.
+    while fitter.comparison.halve_steps_for(made[0].effects):
+        fitter.take_likeliest_noise(())
+        nominal = of_nominal(fitter)
+        made = settled(fitter, again(fitter, made), tell, OWN, MOST_OWN)
+    return nominal, made
+
+
+def _equally_far(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase) -> list[Contender]:
+    """Fit what may be as good as the best as far as that, without what it does not need."""
+    alike, made = fitter.comparison.alike, list(contenders)
+    scores = [c.total + 2.0 * alike * SECOND * (len(c.names) - 1) for c in made]
+    order = np.argsort(scores, kind="stable").tolist()
+    best, open_to = made[order[0]], scores[order[0]] + 2.0 * alike * _OPEN
+    # All against one noise: what does as the best does may have stopped beside its valley.
+    fitter.take_likeliest_noise(best.effects)
+    costs = [fitter.again(c.fit).cost + c.step_credit for c in made if c.fit is not None]
+    here = costs[order[0]]
+    as_good = here + AS_GOOD * max(fitter.nominal()[1] - here, 0.0)
+    alike_kind = [len(c.names) == len(best.names) and cost < as_good for c, cost in zip(made, costs, strict=True)]
+    near = [k for k in order if scores[k] < open_to or alike_kind[k]]
+    if len(near) == 1:
+        return made
+    for n, k in enumerate(near[:_EQUALLY_FAR]):
+        tell("fitting those near the best as far", n, min(len(near), _EQUALLY_FAR))
+        made[k] = as_far(fitter, made[k], alike)
+    return likeliest_first(made)
