@@ -132,6 +132,43 @@ def test_what_is_about_as_likely_or_says_the_same_is_tied_however_parsimonious_t
     assert found == {"substrate_tilt": ("stray_field_gradient",) if tied else ()}
 
 
+@pytest.mark.parametrize(
+    ("likelihoods", "tied"),
+    [
+        # All of it is within the limit, but the one does little of what the best does.
+        ((4.0, 1.0, 3.0, 0.0), ("viscous_drag",)),
+        # The best itself does nothing: nothing does the same.
+        ((0.0, 0.0, 0.0, 0.0), ()),
+    ],
+)
+def test_what_does_nothing_is_not_tied_with_what_does_little(
+    likelihoods: tuple[float, ...], tied: tuple[str, ...]
+) -> None:
+    left = [2.0 - 0.1 * likelihood for likelihood in likelihoods]
+    names = ("substrate_tilt", "draft_angle", "viscous_drag", "")
+    best, *others = (
+        replace(contender(name, sigmas, 0.1), log_likelihood=likelihood, log_evidence=likelihood)
+        for name, sigmas, likelihood in zip(names, left, likelihoods, strict=True)
+    )
+    comparison = SimpleNamespace(readers=(None,), floors=(SimpleNamespace(tracked=COUNT),))
+    found = ties(comparison, Attribution((best, *others), 8.0, False), best)  # type: ignore[arg-type]
+    assert found == {"substrate_tilt": tied}
+
+
+def test_of_a_pair_either_is_tied_with_what_does_the_same_beside_the_other() -> None:
+    names = [("substrate_tilt", "size_error"), ("substrate_tilt", "viscous_drag"), ("size_error", "draft_angle")]
+    likelihoods = (0.0, -2.0, -40.0, -50.0, -60.0)
+    made = [
+        replace(
+            contender("", 0.8 - 0.1 * likelihood, 0.1), names=both, log_likelihood=likelihood, log_evidence=likelihood
+        )
+        for both, likelihood in zip([*names, ("size_error",), ("substrate_tilt",)], likelihoods, strict=True)
+    ]
+    comparison = SimpleNamespace(readers=(None,), floors=(SimpleNamespace(tracked=COUNT),))
+    found = ties(comparison, Attribution(tuple(made), 8.0, False), made[0])  # type: ignore[arg-type]
+    assert found == {"substrate_tilt": (), "size_error": ("viscous_drag",)}
+
+
 def test_a_nominal_model_that_fails_its_test_counts_for_less_where_another_is_likelier() -> None:
     truth = (get("viscous_drag").from_vector((0.02,)),)
     data = measure(plan(PLANS[:2]), truth, seed=1)

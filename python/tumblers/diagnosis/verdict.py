@@ -9,6 +9,7 @@ import numpy as np
 from .attribute import Attribution
 from .comparison import Comparison
 from .contender import Contender
+from .pairs import AS_GOOD
 from .predictive import is_right
 from .result import Verdict
 
@@ -74,6 +75,8 @@ def ties(comparison: Comparison, attribution: Attribution, chosen: Contender) ->
     """Return for each effect of the chosen set those that these trials cannot tell apart from it.
 
     Parsimony may prefer one to another that has more parameters: where likelihood alone does not, that is a tie still.
+    What is no nearer to the chosen set than half the way to what has nothing in the effect's place is not tied, however
+    little the effect changes: it does not do what that does.
 
     Parameters
     ----------
@@ -87,17 +90,26 @@ def ties(comparison: Comparison, attribution: Attribution, chosen: Contender) ->
     trials = range(len(comparison.readers))
     said = chosen.residual.over(trials)
     limit = _TIED + (_ROUGH if any(floor.tracked for floor in comparison.floors) else 0.0)
-    out: dict[str, list[str]] = {name: [] for name in chosen.names}
-    for other in attribution.contenders:
-        if len(other.names) != len(chosen.names) or other.names == chosen.names:
-            continue
-        swapped = [name for name in chosen.names if name not in other.names]
-        put_in = [name for name in other.names if name not in chosen.names]
-        if len(swapped) != 1:
-            continue
-        # What either would lose on average if the other were right.
-        apart = float(np.sum((other.residual.over(trials) - said) ** 2)) / (2.0 * attribution.dispersion)
-        behind = chosen.log_likelihood - other.log_likelihood
-        if min(chosen.log_evidence - other.log_evidence, behind, apart) < limit:
-            out[swapped[0]].append(put_in[0])
-    return {name: tuple(dict.fromkeys(others)) for name, others in out.items()}
+
+    def behind(other: Contender) -> tuple[float, float, float]:
+        # Last, what either would lose on average if the other were right.
+        return (
+            chosen.log_evidence - other.log_evidence,
+            chosen.log_likelihood - other.log_likelihood,
+            float(np.sum((other.residual.over(trials) - said) ** 2)) / (2.0 * attribution.dispersion),
+        )
+
+    known = {frozenset(contender.names): contender for contender in attribution.contenders}
+    out: dict[str, tuple[str, ...]] = {}
+    for name in chosen.names:
+        kept = frozenset(chosen.names) - {name}
+        most = [limit] * 3
+        if kept in known:
+            most = [min(limit, AS_GOOD * much) for much in behind(known[kept])]
+        others = [c for c in attribution.contenders if len(c.names) == len(chosen.names) and name not in c.names]
+        out[name] = tuple(
+            next(iter(set(other.names) - kept))
+            for other in others
+            if kept < set(other.names) and any(much < enough for much, enough in zip(behind(other), most, strict=True))
+        )
+    return out
