@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
 from contextlib import nullcontext
 from pathlib import Path
@@ -71,6 +72,7 @@ def test_the_slowest_are_diagnosed_again_for_the_same_answer(
     assert repeat(tmp_path, count=1, threads=THREADS) == {"dataset-001": False}
     again = json.loads((tmp_path / "dataset-001" / "repeat.json").read_text())
     assert (again["same"], again["threads"]) == (False, THREADS)
+    assert 1 <= again["cores"] <= (os.cpu_count() or 1)
     # Another diagnosis has not been repeated.
     _diagnose(tmp_path / "dataset-001", THREADS)
     assert not (tmp_path / "dataset-001" / "repeat.json").exists()

@@ -130,13 +130,13 @@ def value(scores: Scores, words: str) -> float | None:
 def test_what_was_diagnosed_again_counts_for_time_and_sameness() -> None:
     again = [
         replace(record(number, answer("none"), said("no_gap", shrink=None)), repeated_seconds=50.0 * (number + 1),
-                repeated_threads=4, repeated_same=number > 0)
+                repeated_threads=4, repeated_cores=2, repeated_same=number > 0)
         for number in range(3)
     ]  # fmt: skip
     scores = score_records([*again, record(3, answer("none"), said("no_gap", shrink=None))], 7, lambda _: 0.0)
     assert value(scores, "longest") == 150.0
     assert value(scores, "diagnosed again") == pytest.approx(2 / 3)
-    assert "on 4 threads: at most 150 s" in page_of(scores)
+    assert "on 4 threads (2 cores): at most 150 s" in page_of(scores)
 
 
 def test_scores_are_those_computed_by_hand() -> None:

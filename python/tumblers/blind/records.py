@@ -33,8 +33,9 @@ class Record:
         The table of ``diagnosis.json``; None where the dataset has none.
     seconds, threads, version
         How long the diagnosis took, on how many threads, and by which version it is.
-    repeated_seconds, repeated_threads, repeated_same
-        How long it took again with nothing beside it, on how many threads, and whether it was the same.
+    repeated_seconds, repeated_threads, repeated_cores, repeated_same
+        How long it took again with nothing beside it, on how many threads of how many cores, and whether it was the
+        same.
     """
 
     dataset: str
@@ -45,6 +46,7 @@ class Record:
     version: str | None = None
     repeated_seconds: float | None = None
     repeated_threads: int | None = None
+    repeated_cores: int | None = None
     repeated_same: bool | None = None
 
     @property
@@ -125,6 +127,7 @@ def _record(folder: Path, salt: object, answer: object, answers: Path) -> Record
         version=run.get("version"),
         repeated_seconds=again.get("seconds"),
         repeated_threads=again.get("threads"),
+        repeated_cores=again.get("cores"),
         repeated_same=again.get("same"),
     )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from os import PathLike
 from pathlib import Path
 from time import perf_counter
@@ -76,6 +77,12 @@ def _seconds(path: Path) -> float | None:
     return float(record["seconds"]) if done and (path.parent / DIAGNOSIS).exists() else None
 
 
+def _cores() -> int | None:
+    """Return how many cores there are for this process, where that can be known: threads say little without."""
+    usable = getattr(os, "sched_getaffinity", None)
+    return os.cpu_count() if usable is None else len(usable(0))
+
+
 def _again(folder: Path, threads: int) -> bool:
     from ..dataset import load
     from ..diagnosis import diagnose
@@ -88,6 +95,7 @@ def _again(folder: Path, threads: int) -> bool:
         "version": __version__,
         "seconds": perf_counter() - start,
         "threads": threads,
+        "cores": _cores(),
         "same": same,
     }
     write_files({folder / REPEAT: (json.dumps(record) + "\n").encode()})

@@ -101,7 +101,7 @@ class Scores:
         Axis to how many regions in which a cause acts were overlapped, intersection over union, by half or more.
     seconds_mean, seconds_longest, threads
         Time of a diagnosis, s, and the most threads that one had.
-    repeated_longest, repeated_threads
+    repeated_longest, repeated_threads, repeated_cores
         The same of those that were diagnosed again with nothing beside them; None where none was.
     criteria
         What has to hold.
@@ -126,6 +126,7 @@ class Scores:
     threads: int
     repeated_longest: float | None
     repeated_threads: int | None
+    repeated_cores: int | None
     criteria: tuple[Criterion, ...]
     rows: tuple[Mapping[str, Any], ...]
     drawn: int
@@ -253,6 +254,7 @@ def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores
         threads=max((r.threads for r in records), default=1),
         repeated_longest=max(repeated) if repeated else None,
         repeated_threads=max((r.repeated_threads for r in records if r.repeated_threads is not None), default=None),
+        repeated_cores=max((r.repeated_cores for r in records if r.repeated_cores is not None), default=None),
         criteria=criteria,
         rows=tuple(_row(r) for r in records),
         drawn=len(records),
