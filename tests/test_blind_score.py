@@ -136,7 +136,7 @@ def test_what_was_diagnosed_again_counts_for_time_and_sameness() -> None:
     scores = score_records([*again, record(3, answer("none"), said("no_gap", shrink=None))], 7, lambda _: 0.0)
     assert value(scores, "longest") == 150.0
     assert value(scores, "diagnosed again") == pytest.approx(2 / 3)
-    assert "on 4 threads (2 cores): at most 150 s" in page_of(scores)
+    assert "on 4 threads (cores: 2): at most 150 s" in page_of(scores)
 
 
 def test_scores_are_those_computed_by_hand() -> None:

@@ -12,6 +12,7 @@ from numpy.testing import assert_allclose
 
 from tumblers.diagnosis.beginnings import MANY, from_beginnings, from_its_own_beginning, promise
 from tumblers.diagnosis.comparison import Comparison, Residual
+from tumblers.diagnosis.conclusion import concluded, in_steps_of
 from tumblers.diagnosis.contender import Contender, of_fit, of_nominal
 from tumblers.diagnosis.fit import Fitter
 from tumblers.diagnosis.hypothesis import Hypothesis
@@ -161,7 +162,7 @@ def test_a_shorter_step_is_imposed_only_for_what_leads_without_its_credit(compli
         assert set(simulator.step_s) == {LONGEST_STEP_S}
         # What leads by evidence all the same is held in its steps, and the nominal model with it.
         (leader,) = (c for c in contenders if c.names)
-        again = search.in_steps_of(leader, contenders)
+        again = in_steps_of(fitter, leader, contenders, quiet)
         assert {c.step_credit for c in again} == {0.0}
         assert max(simulator.step_s) <= ContactCompliance.longest_step_s * (1.0 + 1e-9)
     assert simulator.resolves(best.effects)
@@ -259,7 +260,7 @@ def test_the_leader_is_held_in_a_step_that_is_short_enough_for_it() -> None:
     (hypothesis,) = search.possible
     there = (np.array([0.5]) - hypothesis.neutral) / hypothesis.scale
     leader = of_fit(fitter, fitter.fit(hypothesis, there, evaluations=1))
-    found, still = search._concluded(nominal, [leader])
+    found, still = concluded(fitter, nominal, [leader], quiet)
     assert fitter.comparison.simulator.step_s[0] < LONGEST_STEP_S
     assert found.settled
     assert found.total == pytest.approx(beside(fitter, found, found).total, rel=1e-9)
@@ -413,7 +414,7 @@ def test_more_firsts_are_tried_where_every_pair_leaves_a_gap(enough: bool, monke
 
     monkeypatch.setattr(Pairs, "add", spied)
     monkeypatch.setattr(search, "_is_enough", lambda _: enough)
-    monkeypatch.setattr(search, "_is_wanting", lambda _: True)
+    monkeypatch.setattr("tumblers.diagnosis.search.is_wanting", lambda *_: True)
     assert search._pairs(singles, strong=True)
     # What is exchanged later is another contender of the same name.
     assert [any(first is single for first in tried) for single in singles] == [True, True, *(3 * [not enough]), False]

@@ -136,12 +136,13 @@ def test_what_is_about_as_likely_or_says_the_same_is_tied_however_parsimonious_t
     ("likelihoods", "tied"),
     [
         # All of it is within the limit, but the one does little of what the best does.
-        ((4.0, 1.0, 3.0, 0.0), ("viscous_drag",)),
-        # The best itself does nothing: nothing does the same.
+        ((4.0, 0.8, 3.0, 0.0), ("viscous_drag",)),
+        # The best itself does nothing, or less: nothing does the same.
         ((0.0, 0.0, 0.0, 0.0), ()),
+        ((0.0, 1.0, 1.0, 1.0), ()),
     ],
 )
-def test_what_does_nothing_is_not_tied_with_what_does_little(
+def test_what_does_little_of_what_a_weak_effect_does_is_not_tied_with_it(
     likelihoods: tuple[float, ...], tied: tuple[str, ...]
 ) -> None:
     left = [2.0 - 0.1 * likelihood for likelihood in likelihoods]
@@ -155,18 +156,26 @@ def test_what_does_nothing_is_not_tied_with_what_does_little(
     assert found == {"substrate_tilt": tied}
 
 
-def test_of_a_pair_either_is_tied_with_what_does_the_same_beside_the_other() -> None:
-    names = [("substrate_tilt", "size_error"), ("substrate_tilt", "viscous_drag"), ("size_error", "draft_angle")]
-    likelihoods = (0.0, -2.0, -40.0, -50.0, -60.0)
+def test_either_of_a_pair_is_tied_with_what_does_the_same_beside_the_other() -> None:
+    likelihoods = {
+        ("substrate_tilt", "size_error"): 0.0,
+        # Within the limit, but hardly better than the tilt alone; the next does much beside the size.
+        ("substrate_tilt", "viscous_drag"): -2.5,
+        ("size_error", "draft_angle"): -4.0,
+        # Much of it too, and beyond the limit.
+        ("size_error", "field_rolloff"): -20.0,
+        ("substrate_tilt",): -3.0,
+        ("size_error",): -50.0,
+    }
     made = [
         replace(
-            contender("", 0.8 - 0.1 * likelihood, 0.1), names=both, log_likelihood=likelihood, log_evidence=likelihood
+            contender("", 0.8 - 0.1 * likelihood, 0.1), names=names, log_likelihood=likelihood, log_evidence=likelihood
         )
-        for both, likelihood in zip([*names, ("size_error",), ("substrate_tilt",)], likelihoods, strict=True)
+        for names, likelihood in likelihoods.items()
     ]
     comparison = SimpleNamespace(readers=(None,), floors=(SimpleNamespace(tracked=COUNT),))
     found = ties(comparison, Attribution(tuple(made), 8.0, False), made[0])  # type: ignore[arg-type]
-    assert found == {"substrate_tilt": (), "size_error": ("viscous_drag",)}
+    assert found == {"substrate_tilt": ("draft_angle",), "size_error": ()}
 
 
 def test_a_nominal_model_that_fails_its_test_counts_for_less_where_another_is_likelier() -> None:

@@ -135,7 +135,7 @@ def _share(value: float) -> str:
 def _repeated(scores: Scores) -> str:
     if scores.repeated_longest is None:
         return ""
-    cores = "" if scores.repeated_cores is None else f" ({scores.repeated_cores} cores)"
+    cores = "" if scores.repeated_cores is None else f" (cores: {scores.repeated_cores})"
     return (
         f" The slowest again, one after another on {scores.repeated_threads} threads{cores}: at most "
         f"{scores.repeated_longest:.0f} s."

@@ -78,7 +78,7 @@ def _seconds(path: Path) -> float | None:
 
 
 def _cores() -> int | None:
-    """Return how many cores there are for this process, where that can be known: threads say little without."""
+    """Return how many cores this process may use, where that can be known: threads say little without."""
     usable = getattr(os, "sched_getaffinity", None)
     return os.cpu_count() if usable is None else len(usable(0))
 

@@ -102,7 +102,8 @@ class Scores:
     seconds_mean, seconds_longest, threads
         Time of a diagnosis, s, and the most threads that one had.
     repeated_longest, repeated_threads, repeated_cores
-        The same of those that were diagnosed again with nothing beside them; None where none was.
+        How long the longest took of those that were diagnosed again with nothing beside them, and on how many threads
+        of how many cores; None where none was.
     criteria
         What has to hold.
     rows
@@ -194,6 +195,7 @@ def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores
     }
     seconds = [r.seconds for r in records if r.seconds is not None]
     repeated = [r.repeated_seconds for r in records if r.repeated_seconds is not None]
+    longest = next((r for r in records if repeated and r.repeated_seconds == max(repeated)), None)
     same = [r.repeated_same for r in records if r.repeated_same is not None]
 
     def criterion(words: str, share: Share, low: float, high: float = 1.0) -> Criterion:
@@ -253,8 +255,8 @@ def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores
         seconds_longest=max(seconds) if seconds else None,
         threads=max((r.threads for r in records), default=1),
         repeated_longest=max(repeated) if repeated else None,
-        repeated_threads=max((r.repeated_threads for r in records if r.repeated_threads is not None), default=None),
-        repeated_cores=max((r.repeated_cores for r in records if r.repeated_cores is not None), default=None),
+        repeated_threads=None if longest is None else longest.repeated_threads,
+        repeated_cores=None if longest is None else longest.repeated_cores,
         criteria=criteria,
         rows=tuple(_row(r) for r in records),
         drawn=len(records),

@@ -35,7 +35,7 @@ def in_steps_of(fitter: Fitter, leader: Contender, contenders: Sequence[Contende
     leader
         One of the contenders.
     contenders
-        What `concluded` returned.
+        What a search found, the nominal model among them.
     tell
         Is told the phase, how much of it is done, and of how much.
     """
@@ -54,7 +54,7 @@ def concluded(fitter: Fitter, nominal: Contender, contenders: Sequence[Contender
     nominal
         The nominal model.
     contenders
-        The others, the likeliest first.
+        The others, the leader first.
     tell
         Is told the phase, how much of it is done, and of how much.
     """
@@ -78,7 +78,7 @@ def resolved(
     nominal
         The nominal model.
     contenders
-        The others, the likeliest first.
+        The others, the leader first.
     tell
         Is told the phase, how much of it is done, and of how much.
     """

@@ -46,7 +46,7 @@ IDLE_POINTS, POLISH_POINTS = 2, 6
 ENOUGH = 5.0
 # Effects that are held against their own noise before one counts as best, and how many where that gains much.
 OWN, MOST_OWN = 4, 6
-# How many other fits are held so, and how often it is measured after a further fit at most.
+# How many of other fits are (the defaults of `settled`), and how often it is measured after a further fit at most.
 _SETTLED, _ROUNDS = 2, 2
 # What another may gain by its own noise, over the most that one has gained: at one threshold, in a dataset whose truth
 # was known, five effects gained 640 to 790.

@@ -9,7 +9,6 @@ import numpy as np
 from .attribute import Attribution
 from .comparison import Comparison
 from .contender import Contender
-from .pairs import AS_GOOD
 from .predictive import is_right
 from .result import Verdict
 
@@ -20,6 +19,8 @@ _LEAST_DOUBT = 0.05
 # Evidence or likelihoods less than this factor apart, ln 20; and that of tracks by e^3 more, by which it moves within
 # an interval with the point at which the noise is measured.
 _TIED, _ROUGH = 3.0, 3.0
+# What adds less than this share of what an effect adds does not do the same: it goes an eighth of the way. A choice.
+_MUCH = 0.25
 
 
 def judge(comparison: Comparison, attribution: Attribution, foretold: bool) -> tuple[Verdict, Contender]:
@@ -75,8 +76,8 @@ def ties(comparison: Comparison, attribution: Attribution, chosen: Contender) ->
     """Return for each effect of the chosen set those that these trials cannot tell apart from it.
 
     Parsimony may prefer one to another that has more parameters: where likelihood alone does not, that is a tie still.
-    What is no nearer to the chosen set than half the way to what has nothing in the effect's place is not tied, however
-    little the effect changes: it does not do what that does.
+    What does little of what the effect does is not tied with it, however little that is; nor is anything with an effect
+    that does nothing.
 
     Parameters
     ----------
@@ -90,26 +91,26 @@ def ties(comparison: Comparison, attribution: Attribution, chosen: Contender) ->
     trials = range(len(comparison.readers))
     said = chosen.residual.over(trials)
     limit = _TIED + (_ROUGH if any(floor.tracked for floor in comparison.floors) else 0.0)
-
-    def behind(other: Contender) -> tuple[float, float, float]:
-        # Last, what either would lose on average if the other were right.
-        return (
-            chosen.log_evidence - other.log_evidence,
-            chosen.log_likelihood - other.log_likelihood,
-            float(np.sum((other.residual.over(trials) - said) ** 2)) / (2.0 * attribution.dispersion),
-        )
-
     known = {frozenset(contender.names): contender for contender in attribution.contenders}
-    out: dict[str, tuple[str, ...]] = {}
+    out: dict[str, list[str]] = {}
     for name in chosen.names:
+        out[name] = []
         kept = frozenset(chosen.names) - {name}
-        most = [limit] * 3
-        if kept in known:
-            most = [min(limit, AS_GOOD * much) for much in behind(known[kept])]
-        others = [c for c in attribution.contenders if len(c.names) == len(chosen.names) and name not in c.names]
-        out[name] = tuple(
-            next(iter(set(other.names) - kept))
-            for other in others
-            if kept < set(other.names) and any(much < enough for much, enough in zip(behind(other), most, strict=True))
-        )
-    return out
+        for names, other in known.items():
+            if name in names or len(names) != len(chosen.names) or not kept < names:
+                continue
+            if kept in known and not _does_as_much(other, chosen, known[kept]):
+                continue
+            # What either would lose on average if the other were right.
+            apart = float(np.sum((other.residual.over(trials) - said) ** 2)) / (2.0 * attribution.dispersion)
+            behind = chosen.log_likelihood - other.log_likelihood
+            if min(chosen.log_evidence - other.log_evidence, behind, apart) < limit:
+                (instead,) = names - kept
+                out[name].append(instead)
+    return {name: tuple(others) for name, others in out.items()}
+
+
+def _does_as_much(other: Contender, chosen: Contender, without: Contender) -> bool:
+    """Return whether another adds enough of what an effect adds to the likelihood of what has neither."""
+    gain = chosen.log_likelihood - without.log_likelihood
+    return gain > 0.0 and other.log_likelihood - without.log_likelihood > _MUCH * gain
