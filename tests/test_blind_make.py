@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import json
 import multiprocessing
+import shutil
 from collections import Counter
 from pathlib import Path
 from types import SimpleNamespace
@@ -17,6 +18,7 @@ from tumblers.blind.commands import blind_app
 from tumblers.blind.layout import draw_lab, world_scenario
 from tumblers.blind.make import make
 from tumblers.blind.records import read_records
+from tumblers.blind.repeat import REPEAT_FORMAT
 from tumblers.blind.schedule import task
 from tumblers.blind.strength import strength
 from tumblers.blind.world import watch
@@ -74,6 +76,17 @@ def test_seals_are_whole_and_a_changed_answer_is_named(made: Path, tmp_path: Pat
     changed.write_text(json.dumps(table))
     with pytest.raises(InputError, match=r"dataset-001: found an answer that is not the sealed one"):
         read_records(made, changed)
+
+
+def test_what_a_repeat_wrote_is_read_again(made: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "set"
+    shutil.copytree(made, folder)
+    again = {"format": REPEAT_FORMAT, "version": "1", "seconds": 3.5, "threads": 4, "cores": 2, "same": True}
+    (folder / "dataset-001" / "repeat.json").write_text(json.dumps(again))
+    _, (first, second) = read_records(folder, folder / "answers.json")
+    assert (first.repeated_seconds, first.repeated_cores) == (None, None)
+    assert (second.repeated_seconds, second.repeated_threads, second.repeated_cores) == (3.5, 4, 2)
+    assert second.repeated_same is True
 
 
 def test_a_seal_does_not_depend_on_the_order_of_keys() -> None:
