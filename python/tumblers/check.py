@@ -46,15 +46,16 @@ def number(
     most: float | None = None,
 ) -> float:
     """Return a finite number within its bounds as a float; a bool is not a number."""
-    limits = [("greater than", above), ("of at least", least), ("less than", below), ("of at most", most)]
-    bounds = " and ".join(f"{words} {limit:g}" for words, limit in limits if limit is not None)
-    expected = f"a finite number {bounds}".strip()
-    if isinstance(value, bool | np.bool_) or not isinstance(value, Real):
-        raise InputError(key, show(value), expected)
-    try:
-        found = float(value)
-    except OverflowError:
-        found = math.inf
+    # Sweeps and fits check millions that are right: the words are for one that is not.
+    if type(value) is float:
+        found = value
+    elif isinstance(value, bool | np.bool_) or not isinstance(value, Real):
+        raise _refused(key, value, above, least, below, most)
+    else:
+        try:
+            found = float(value)
+        except OverflowError:
+            found = math.inf
     if (
         not math.isfinite(found)
         or (above is not None and found <= above)
@@ -62,8 +63,16 @@ def number(
         or (below is not None and found >= below)
         or (most is not None and found > most)
     ):
-        raise InputError(key, show(value), expected)
+        raise _refused(key, value, above, least, below, most)
     return found
+
+
+def _refused(
+    key: str, value: object, above: float | None, least: float | None, below: float | None, most: float | None
+) -> InputError:
+    limits = [("greater than", above), ("of at least", least), ("less than", below), ("of at most", most)]
+    bounds = " and ".join(f"{words} {limit:g}" for words, limit in limits if limit is not None)
+    return InputError(key, show(value), f"a finite number {bounds}".strip())
 
 
 def text(key: str, value: object, expected: str) -> str:

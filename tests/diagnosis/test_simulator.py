@@ -34,7 +34,7 @@ def test_the_oldest_makes_room_and_comes_back_the_same(monkeypatch: pytest.Monke
     simulator, made = Simulator(plan(), 1), rollouts_made(monkeypatch)
     first = simulator.run(jobs(0, 1))[0]
     room = simulator._kept
-    assert room == sum(simulators._size(rollout) for rollout, _ in simulator._known.values())
+    assert room == sum(simulators._size(path) for path in simulator._known.values())
     monkeypatch.setattr(simulators, "_MOST_KEPT", int(3.5 * room))
     simulator.run(jobs(1, 6))
     assert simulator._kept <= 3.5 * room

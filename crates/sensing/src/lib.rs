@@ -15,6 +15,7 @@ mod camera;
 mod channel;
 mod comparison;
 mod error;
+mod looks;
 mod loss;
 mod measured;
 mod nuisances;

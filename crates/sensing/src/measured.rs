@@ -1,6 +1,7 @@
 //! What was measured in one trial, in units of its noise.
 
-use crate::{Camera, Channel, Path, SensingError, Whiten};
+use crate::looks::Looks;
+use crate::{Camera, Channel, Path, Pose, SensingError, Whiten};
 
 /// Between two looks at a path from which the derivative by the clock is taken, s.
 pub const CLOCK_STEP: f64 = 2e-4;
@@ -91,16 +92,11 @@ impl Measured {
     pub fn whitened(&self, path: &Path, outcomes: &[[f64; 2]], local: &[f64; 3], shared: &[f64]) -> Vec<f64> {
         let camera = Camera::new(shared[0], shared[1]);
         let mut rows: Vec<[f64; 1]> = Vec::with_capacity(self.tracked() + self.outcomes);
+        let mut looks: Looks<'_, Pose> = Looks::new();
         for column in &self.columns {
-            let wrong: Vec<[f64; 1]> = column
-                .times
-                .iter()
-                .enumerate()
-                .map(|(n, time)| {
-                    let seen = path.at(time + local[0]).through(&camera, [local[1], local[2]]);
-                    [column.channel.wrong(n, &seen)]
-                })
-                .collect();
+            let seen = looks.at(&column.times, |time| path.at(time + local[0]).through(&camera, [local[1], local[2]]));
+            let wrong: Vec<[f64; 1]> =
+                seen.iter().enumerate().map(|(n, seen)| [column.channel.wrong(n, seen)]).collect();
             column.whiten.apply(&wrong, &mut rows);
         }
         rows.extend(outcomes.iter().map(|line| [line[0] + line[1] * shared[1]]));
@@ -112,17 +108,19 @@ impl Measured {
     pub fn linearised(&self, path: &Path, outcomes: &[[f64; 2]], local: &[f64; 3], camera: &Camera) -> Vec<Row> {
         let mut rows = Vec::with_capacity(self.tracked() + self.outcomes);
         let origin = [local[1], local[2]];
+        let mut looks: Looks<'_, [Pose; 3]> = Looks::new();
         for column in &self.columns {
-            let raw: Vec<Row> = column
-                .times
+            let seen = looks.at(&column.times, |time| {
+                let pose = path.at(time + local[0]);
+                let later = path.at(time + CLOCK_STEP + local[0]);
+                [pose, pose.through(camera, origin), later.through(camera, origin)]
+            });
+            let raw: Vec<Row> = seen
                 .iter()
                 .enumerate()
-                .map(|(n, time)| {
-                    let pose = path.at(time + local[0]);
-                    let later = path.at(time + CLOCK_STEP + local[0]);
-                    let wrong = column.channel.wrong(n, &pose.through(camera, origin));
-                    let then = column.channel.wrong(n, &later.through(camera, origin));
-                    let [x, y, heading, scale] = column.channel.by_sensor(&pose);
+                .map(|(n, [pose, now, later])| {
+                    let (wrong, then) = (column.channel.wrong(n, now), column.channel.wrong(n, later));
+                    let [x, y, heading, scale] = column.channel.by_sensor(pose);
                     [(then - wrong) / CLOCK_STEP, x, y, heading, scale, wrong]
                 })
                 .collect();
@@ -140,14 +138,14 @@ impl Measured {
         let clocks = CLOCKS.map(|share| share * bound);
         let mut losses = clocks.map(|clock| (clock / sigmas[0]).powi(2));
         let perfect = Camera::new(0.0, 0.0);
+        let mut looks: Looks<'_, [Pose; 7]> = Looks::new();
         for (column, shift) in self.columns.iter().zip(&self.shifts) {
-            let wrong: Vec<[f64; 7]> = column
-                .times
+            let seen =
+                looks.at(&column.times, |time| clocks.map(|clock| path.at(time + clock).through(&perfect, [0.0; 2])));
+            let wrong: Vec<[f64; 7]> = seen
                 .iter()
                 .enumerate()
-                .map(|(n, time)| {
-                    clocks.map(|clock| column.channel.wrong(n, &path.at(time + clock).through(&perfect, [0.0; 2])))
-                })
+                .map(|(n, poses)| std::array::from_fn(|k| column.channel.wrong(n, &poses[k])))
                 .collect();
             let mut rows = Vec::with_capacity(wrong.len());
             column.whiten.apply(&wrong, &mut rows);

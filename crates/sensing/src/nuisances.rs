@@ -158,6 +158,18 @@ impl Problem<'_> {
         }
         // One trial that the model cannot follow must not turn the camera of all.
         let lost = rows.column(wrong).iter().take(trial.tracked()).map(|r| huber(*r)).sum();
-        weight(lost, trial.whole()) * rows.tr_mul(&rows)
+        weight(lost, trial.whole()) * squared(&rows)
     }
+}
+
+/// `AᵀA`, whose half below the diagonal is that above it.
+fn squared(a: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut made = DMatrix::zeros(a.ncols(), a.ncols());
+    for j in 0..a.ncols() {
+        for i in 0..=j {
+            made[(i, j)] = a.column(i).dot(&a.column(j));
+            made[(j, i)] = made[(i, j)];
+        }
+    }
+    made
 }

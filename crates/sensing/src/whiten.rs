@@ -2,6 +2,9 @@
 
 use crate::SensingError;
 
+/// Rows whose sums are made side by side.
+const TOGETHER: usize = 4;
+
 /// A lower triangle, row after row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Whiten {
@@ -29,16 +32,42 @@ impl Whiten {
     /// Appends the product with `N` columns, given as rows.
     pub fn apply<const N: usize>(&self, columns: &[[f64; N]], out: &mut Vec<[f64; N]>) {
         let mut rest = self.packed.as_slice();
-        for r in 0..self.count {
-            let (row, below) = rest.split_at(r + 1);
+        let mut next = |length: usize| {
+            let (row, below) = rest.split_at(length);
             rest = below;
-            let mut sum = [0.0; N];
-            for (w, values) in row.iter().zip(columns) {
-                for (s, v) in sum.iter_mut().zip(values) {
-                    *s += w * v;
+            row
+        };
+        // A sum waits for its last addition: those of some rows go side by side.
+        let together = self.count - self.count % TOGETHER;
+        for r in (0..together).step_by(TOGETHER) {
+            let rows: [&[f64]; TOGETHER] = std::array::from_fn(|k| next(r + k + 1));
+            let mut sums = [[0.0; N]; TOGETHER];
+            let [a, b, c, d] = rows;
+            for ((((a, b), c), d), values) in a.iter().zip(b).zip(c).zip(d).zip(columns) {
+                for (sum, w) in sums.iter_mut().zip([a, b, c, d]) {
+                    add(sum, *w, values);
                 }
+            }
+            for (sum, row) in sums.iter_mut().zip(rows) {
+                for (w, values) in row.iter().zip(columns).skip(r + 1) {
+                    add(sum, *w, values);
+                }
+            }
+            out.extend(sums);
+        }
+        for r in together..self.count {
+            let mut sum = [0.0; N];
+            for (w, values) in next(r + 1).iter().zip(columns) {
+                add(&mut sum, *w, values);
             }
             out.push(sum);
         }
+    }
+}
+
+#[inline]
+fn add<const N: usize>(sum: &mut [f64; N], weight: f64, values: &[f64; N]) {
+    for (s, v) in sum.iter_mut().zip(values) {
+        *s += weight * v;
     }
 }

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from .. import _core
 from ..dataset import Dataset
 from ..effects.base import Effect
-from .floor import Floor, Sensitivity, build_floors, choose_steps, measure_sensitivity
+from .built_floors import BuiltFloors
+from .floor import Floor, Sensitivity, choose_steps, measure_sensitivity
 from .loss import robust_cost, weight_of
 from .nuisances import NuisanceFit
 from .observed import observe
@@ -90,6 +91,7 @@ class Comparison:
         )
         choose_steps(simulator, self.readers)
         self._longer = False
+        self._built = BuiltFloors()
         self.nominal_paths: list[Path | None]
         self.floors: tuple[Floor, ...]
         self._known: dict[tuple[Effect, ...], list[Sensitivity]]
@@ -180,9 +182,11 @@ class Comparison:
         shares
             By trial, how much of what moves the paths counts; all of it if None.
         """
+        # What is neutral moves nothing.
+        effects = tuple(effect for effect in effects if not effect.is_neutral())
         if effects not in self._known:
             self._known[effects] = measure_sensitivity(self.simulator, self.readers, effects)
-        self.floors = build_floors(self.readers, self._known[effects], shares)
+        self.floors = self._built.of(self.readers, self._known[effects], shares)
 
     @property
     def log_determinant(self) -> float:

@@ -87,7 +87,7 @@ def resolved(
     while fitter.comparison.halve_steps_for(made[0].effects):
         fitter.take_likeliest_noise(())
         nominal = of_nominal(fitter)
-        made = settled(fitter, again(fitter, made), tell, OWN, MOST_OWN)
+        made = settled(fitter, again(fitter, made), tell, OWN, MOST_OWN, fitted=True)
     return nominal, made
 
 

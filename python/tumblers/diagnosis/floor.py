@@ -42,7 +42,7 @@ from .pose import Path
 from .reading import Reader
 from .simulator import SHORTEST_STEP_S, Edit, Job, Simulator
 
-__all__ = ["SHARED", "TOLERANCES", "Floor", "Sensitivity", "build_floors", "choose_steps", "measure_sensitivity"]
+__all__ = ["SHARED", "TOLERANCES", "Floor", "Sensitivity", "build_floor", "choose_steps", "measure_sensitivity"]
 
 Floats = NDArray[np.float64]
 _NO_LOCAL, _NO_CAMERA = np.zeros(3), np.zeros(2)
@@ -272,24 +272,6 @@ def _in_twice(simulator: Simulator, edit: Edit) -> Edit:
     return lambda scenario: edit(simulator.twice(scenario))
 
 
-def build_floors(
-    readers: tuple[Reader, ...], moved: Sequence[Sensitivity], shares: Sequence[float] | None = None
-) -> tuple[Floor, ...]:
-    """Return the noise of each trial.
-
-    Parameters
-    ----------
-    readers
-        Of the dataset's trials.
-    moved
-        By trial, what moves the path that should not.
-    shares
-        By trial, how much of these changes of a track counts as noise; all of them if None.
-    """
-    counted = [1.0] * len(readers) if shares is None else shares
-    return tuple(_floor(*each) for each in zip(readers, moved, counted, strict=True))
-
-
 def _change(reader: Reader, path: Path | None, other: Path | None) -> dict[str, Floats]:
     if path is None or other is None:
         return {}
@@ -325,7 +307,18 @@ def _around(change: Floats) -> Floats:
     return np.asarray(maximum_filter1d(np.abs(change), 3))
 
 
-def _floor(reader: Reader, moved: Sensitivity, share: float) -> Floor:
+def build_floor(reader: Reader, moved: Sensitivity, share: float) -> Floor:
+    """Return the noise of a trial.
+
+    Parameters
+    ----------
+    reader
+        Of the trial.
+    moved
+        What moves the path that should not.
+    share
+        How much of these changes of a track counts as noise.
+    """
     observed = reader.observed
     time = np.maximum(observed.time_s, 0.0)
     shared = (*moved.tolerances, moved.coarse)

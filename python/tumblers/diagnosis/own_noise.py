@@ -94,6 +94,7 @@ def settled(
     tell: OnPhase,
     count: int = _SETTLED,
     most: int = _SETTLED,
+    fitted: bool = False,
 ) -> list[Contender]:
     """Hold the best against their own noise and fit them on; the best first, and the leader always settled.
 
@@ -112,18 +113,28 @@ def settled(
         How many of the best are held so.
     most
         How many at most where others would lead if they gained about as much by it.
+    fitted
+        Whether all of them were so before, in other steps: what leads after `most`, flattered by the noise around
+        another, is then fitted on only if it still leads against its own.
     """
     made = likeliest_first(contenders)
+    held: set[Contender] = set()
     gain, done = 0.0, 0
     while (k := next((k for k, contender in enumerate(made) if not contender.settled), None)) is not None:
         leading = min((contender.total for contender in made if contender.settled), default=inf)
         if k > 0 and (done >= most or (k >= count and made[k].total - _AS_MUCH * gain >= leading)):
             break
         tell("another look at the best", min(done, most), most)
-        before, made[k] = made[k].total, _settled(fitter, made[k])
-        gain = max(gain, before - made[k].total)
+        before = made[k]
+        if not fitted or done < most or before in held:
+            made[k] = _settled(fitter, before)
+            gain = max(gain, before.total - made[k].total)
+            done += 1
+        else:
+            assert before.fit is not None
+            made[k] = against_itself(fitter, before.fit)
+            held.add(made[k])
         made = likeliest_first(made)
-        done += 1
     return made
 
 

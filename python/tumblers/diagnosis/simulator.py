@@ -35,8 +35,9 @@ _STEPS_PER_CYCLE = 100
 _PIECE_S = 0.1
 # Poses that one run of all trials may have: some dozen runs are in memory at once.
 _MOST_ROWS = 500_000
-# Bytes of rollouts that are kept: a fit often comes back to a point, and the search to a fit.
+# Bytes of paths that are kept: a fit often comes back to a point, and the search to a fit.
 _MOST_KEPT = 256_000_000
+_PERFECT = Camera()
 
 Edit = Callable[[Scenario], Scenario]
 Floats = NDArray[np.float64]
@@ -87,7 +88,7 @@ class Simulator:
         self.step_s = [longest_step_s(trial.field) for trial in dataset.trials]
         self._check()
         self._nominal: dict[tuple[int, float], Scenario] = {}
-        self._known: OrderedDict[Scenario, tuple[_core._Rollout, int]] = OrderedDict()
+        self._known: OrderedDict[Scenario, Path | None] = OrderedDict()
         self._kept = 0
 
     def _check(self) -> None:
@@ -238,7 +239,7 @@ class Simulator:
         """
         scenarios = [self._possible(job) for job in jobs]
         # A camera changes what is seen, not what moves.
-        moving = [None if s is None else replace(s, camera=Camera()) for s in scenarios]
+        moving = [None if s is None else _unseen(s) for s in scenarios]
         new = list(dict.fromkeys(s for s in moving if s is not None and s not in self._known))
         trials: list[_core.Trial] = []
         runnable: list[Scenario] = []
@@ -251,14 +252,14 @@ class Simulator:
             # What spins faster than its steps show has left every view, and takes the solver long.
             results = _core.rollouts(trials, every, self.threads, on_progress, while_resolved=True)
         for scenario, result, rows in zip(runnable, results, every, strict=True):
-            self._known[scenario] = result, rows
-            self._kept += _size(result)
+            self._known[scenario] = path = self._path(scenario, result, rows)
+            self._kept += _size(path)
         paths = [
-            None if seen is None or moved is None or moved not in self._known else self._path(seen, *self._known[moved])
+            None if seen is None or moved is None else _seen(self._known.get(moved), seen.camera)
             for seen, moved in zip(scenarios, moving, strict=True)
         ]
         while self._kept > _MOST_KEPT and len(self._known) > 1:
-            self._kept -= _size(self._known.popitem(last=False)[1][0])
+            self._kept -= _size(self._known.popitem(last=False)[1])
         return paths
 
     def _possible(self, job: Job) -> Scenario | None:
@@ -267,6 +268,7 @@ class Simulator:
         return None
 
     def _path(self, scenario: Scenario, rollout: _core._Rollout, every: int) -> Path | None:
+        """Return what moved as a perfect camera sees it."""
         if rollout["error"] is not None:
             return None
         # The last row may be off the even times; a robot that left all bounds has fewer.
@@ -277,18 +279,30 @@ class Simulator:
         orientation = rollout["orientation"][:rows]
         # One sign along the path, so that neighbours can be averaged.
         same = np.einsum("ij,ij->i", orientation[1:], orientation[:-1]) >= 0.0
-        sign = np.concatenate([[1.0], np.cumprod(np.where(same, 1.0, -1.0))])
-        orientation = orientation * sign[:, None]
+        if not same.all():
+            orientation = orientation * np.concatenate([[1.0], np.cumprod(np.where(same, 1.0, -1.0))])[:, None]
         offset = scenario.robot.center_of_mass_m
         if self.dataset.sensor.tracked_point == "body_centre" and any(offset):
             position = position - _turned(orientation, np.array(offset))
-        return Path(
-            interval_s=every * scenario.run.fixed_step_s,
-            position_m=scenario.camera.seen_position(position),
-            orientation=scenario.camera.seen_orientation(orientation),
-            contact_mode=rollout["contact_mode"][:rows],
-            clock_s=scenario.camera.time_offset_s,
-        )
+        interval = every * scenario.run.fixed_step_s
+        return Path(interval, position, orientation, rollout["contact_mode"][:rows])
+
+
+def _unseen(scenario: Scenario) -> Scenario:
+    return scenario if scenario.camera == _PERFECT else replace(scenario, camera=_PERFECT)
+
+
+def _seen(path: Path | None, camera: Camera) -> Path | None:
+    """Return a path as a camera sees it."""
+    if path is None or camera == _PERFECT:
+        return path
+    return Path(
+        interval_s=path.interval_s,
+        position_m=camera.seen_position(path.position_m),
+        orientation=camera.seen_orientation(path.orientation),
+        contact_mode=path.contact_mode,
+        clock_s=camera.time_offset_s,
+    )
 
 
 def _longer(scenario: Scenario, time_s: float) -> Scenario:
@@ -299,8 +313,9 @@ def _longer(scenario: Scenario, time_s: float) -> Scenario:
     return replace(scenario, run=replace(scenario.run, duration_s=duration))
 
 
-def _size(rollout: _core._Rollout) -> int:
-    return sum(column.nbytes for column in rollout.values() if isinstance(column, np.ndarray))
+def _size(path: Path | None) -> int:
+    # Beside its columns, a path that is compared has its poses side by side.
+    return 0 if path is None else 2 * (path.position_m.nbytes + path.orientation.nbytes) + path.contact_mode.nbytes
 
 
 def longest_step_s(field: object) -> float:
