@@ -16,7 +16,7 @@ from ..effects.base import Effect
 from .built_floors import BuiltFloors
 from .floor import Floor, Sensitivity, choose_steps, measure_sensitivity
 from .loss import robust_cost, weight_of
-from .nuisances import NuisanceFit
+from .nuisances import Fitted, NuisanceFit
 from .observed import observe
 from .pose import Path
 from .reading import Reader
@@ -291,17 +291,37 @@ class Comparison:
         train, fit_nuisances, share, tolerance
             As in `residual`.
         """
-        nuisances, stretches = self.nuisances, self._stretches(share)
+        stretches = self._stretches(share)
         counted = range(len(self.readers)) if train is None else train
-        out = []
-        for local, shared, wrong in nuisances.fitted(runs, stretches, counted, tolerance, fit_nuisances):
-            prior = np.concatenate([(local / nuisances.local_sigmas).ravel(), shared / nuisances.shared_sigmas])
-            trials = tuple(
-                np.full(len(stretch.counts), _NOT_RUN) if values is None else values
-                for stretch, values in zip(stretches, wrong, strict=True)
-            )
-            out.append(Residual(trials, prior, local, shared[:2], shared[2:]))
-        return out
+        found = self.nuisances.fitted(runs, stretches, counted, tolerance, fit_nuisances)
+        return [self._found(fitted, stretches) for fitted in found]
+
+    def residual_of_beginnings(self, paths: Sequence[Path | None], last_s: float, tolerance: Floats) -> Residual:
+        """Return how wrong a model is all along with the sensor's nuisances fitted to the beginnings.
+
+        Parameters
+        ----------
+        paths
+            The model's, one for each trial.
+        last_s
+            Time of the last frame at most that they are fitted to, s.
+        tolerance
+            How far the nominal numbers are off, shape (`SHARED`,).
+        """
+        each = zip(self.readers, self.floors, strict=True)
+        stretches = [Stretch.beginning(reader, floor, last_s) for reader, floor in each]
+        (fitted,) = self.nuisances.fitted([paths], stretches, range(len(stretches)), tolerance)
+        return self.held(paths, self._found(fitted, stretches))
+
+    def _found(self, fitted: Fitted, stretches: Sequence[Stretch]) -> Residual:
+        """Return fitted nuisances with what they leave, and what they cost."""
+        local, shared, nuisances = fitted.local, fitted.shared, self.nuisances
+        prior = np.concatenate([(local / nuisances.local_sigmas).ravel(), shared / nuisances.shared_sigmas])
+        trials = tuple(
+            np.full(len(stretch.counts), _NOT_RUN) if values is None else values
+            for stretch, values in zip(stretches, fitted.wrong, strict=True)
+        )
+        return Residual(trials, prior, local, shared[:2], shared[2:])
 
     def held(self, paths: Sequence[Path | None], nuisances: Residual) -> Residual:
         """Return how wrong a model is with all nuisances held where they were found against another noise.

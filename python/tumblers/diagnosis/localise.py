@@ -9,6 +9,9 @@ noise gives it. A part of the data counts as affected where in one of its channe
 
 which is three standard errors of a sum of squares whose numbers are correlated in pairs. No part counts as affected
 unless a trial does, and in a trial ν is 1, the floor's variance, which is more than the noise has.
+
+Of time and of place along y an interval holds most of what is affected. Where the gap sets in at a moment or in a place
+that trials share (`onset`), the region is that instead.
 """
 
 from __future__ import annotations
@@ -22,6 +25,7 @@ from numpy.typing import NDArray
 from .cells import MODES, Cells
 from .comparison import Comparison, Residual
 from .observed import CHANNELS
+from .onset import begins_at_place, begins_at_time
 from .pose import Path
 from .result import HeatMap, Region
 
@@ -89,8 +93,10 @@ def localise(
     total = float(np.sum(np.maximum(_sums(cells.trial, cells.excess, len(ids)), 0.0)))
     regions = _trials(cells, ids, total)
     if regions:
+        found = (begins_at_time(comparison, residual, paths), begins_at_place(comparison, residual, paths))
+        begun = {region.axis: region for region in found if region is not None}
         for axis in axes.values():
-            regions += _interval(cells, axis, total)
+            regions += [begun[axis.name]] if axis.name in begun else _interval(cells, axis, total)
         regions += _values(cells, "contact_mode", cells.mode, MODES, total)
         regions += _values(cells, "channel", cells.channel, CHANNELS, total)
     regions.sort(key=lambda region: -region.share_of_gap)

@@ -1,0 +1,218 @@
+"""A gap that sets in at a moment or in a place that the trials share: until then the model is right.
+
+A number is off where it is beyond two standard deviations, as q = 5 % of noise is; in x, y and heading, which stay off
+once they are, what counts is by how much it is off from those just before. A region S of time or place is held against
+a cause that acts all along. Of a channel of a trial, k of n numbers are off before the trial comes to S, k' of n' in S,
+and k'' of n'' after it:
+
+```text
+Λ(S) = Σ [ln L(k, n; q) + ln L(k', n') + ln L(k'', n'') - ln L(k + k' + k'', n + n' + n'')] / a
+ln L(k, n; p) = k ln p + (n - k) ln(1 - p),      p = max(k/n, q) where none is given
+```
+
+a is how many neighbouring numbers count as one. What comes after S need not be right: a robot that was held up may stay
+off its course. The first half of a cycle does not count, for until then no cause has had its turn, nor does a trial
+whose field does not rotate.
+
+The likeliest S is told where it is three standard deviations clear, over all that were looked at, where more of what is
+gained lies in it than of the numbers, and where few trials had rather a region of their own: what a cause that acts all
+along adds up to shows in each trial at another time and place.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import log
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .cells import Cells
+from .comparison import Comparison, Residual
+from .observed import CHANNELS
+from .pose import Path
+from .result import Region
+
+__all__ = ["begins_at_place", "begins_at_time"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+
+# Two standard deviations, squared, and the share of noise that is beyond.
+_OFF, _BY_CHANCE = 4.0, 0.05
+# The share of all, short of what has no logarithm.
+_ALL = 1.0 - 1e-12
+# Three standard deviations as a logarithm of likelihoods.
+_CLEAR = 4.5
+# What trials have in common of what each would have in a region of its own.
+_SHARED = 0.8
+_MOMENTS = 32
+# Places are told apart by this share of the body's length; along a long way, so many.
+_PART_OF_BODY, _MOST_PARTS = 0.5, 200
+
+
+def begins_at_time(comparison: Comparison, residual: Residual, paths: Sequence[Path | None]) -> Region | None:
+    """Return the times from which on the model is wrong in the trials alike, None if there are none.
+
+    A clock or an origin that was fitted to a whole trial takes some of what comes after a moment, and lays it on what
+    was before: for each moment they are fitted to what is before it.
+
+    Parameters
+    ----------
+    comparison
+        The dataset, ready to be compared.
+    residual
+        How wrong the model is, the sensor's nuisances fitted to all.
+    paths
+        The model's.
+    """
+    cells = Cells.of(comparison, residual, paths)
+    counted = _counted(cells)
+    if not counted.any():
+        return None
+    last = float(np.max(cells.time_s[counted]))
+    moments = np.linspace(0.0, last, _MOMENTS + 1)[1:-1].tolist()
+    seen = [
+        Cells.of(comparison, comparison.residual_of_beginnings(paths, moment, residual.tolerance), paths)
+        for moment in moments
+    ]
+    evidence = np.empty((len(moments), len(paths)))
+    for row, moment, then in zip(evidence, moments, seen, strict=True):
+        before, after = (
+            np.stack([_tally(then, mask & (then.trial == trial)) for trial in range(len(paths))])
+            for mask in (counted & (then.time_s < moment), counted & (then.time_s >= moment))
+        )
+        row[:] = _evidence(before, after, np.zeros_like(after)) / comparison.alike
+    best = _shared(evidence)
+    return None if best is None else _region("time_s", seen[best], cells.time_s, counted, moments[best], last)
+
+
+def begins_at_place(comparison: Comparison, residual: Residual, paths: Sequence[Path | None]) -> Region | None:
+    """Return the stretch along y at which the model is wrong in the trials alike, None if there is none.
+
+    Parameters
+    ----------
+    comparison
+        The dataset, ready to be compared.
+    residual
+        How wrong the model is, the sensor's nuisances fitted.
+    paths
+        The model's.
+    """
+    cells = Cells.of(comparison, residual, paths)
+    place = _measured_y(comparison, residual, cells)
+    counted = _counted(cells) & np.isfinite(place)
+    if not counted.any():
+        return None
+    body = np.concatenate(comparison.dataset.robot.body().outline)
+    low, way = float(np.min(place[counted])), float(np.ptp(place[counted]))
+    width = max(_PART_OF_BODY * float(np.ptp(body[:, 1])), way / _MOST_PARTS)
+    bins = np.floor((place[counted] - low) / width).astype(np.intp)
+    count = int(bins.max()) + 1
+    # From the start of each part of the way to the end of this or a later one.
+    first, last = np.triu_indices(count)
+    evidence = np.empty((len(first), len(paths)))
+    for trial in range(len(paths)):
+        mine = np.flatnonzero(counted)[cells.trial[counted] == trial]
+        order = np.argsort(cells.time_s[mine], kind="stable")
+        mine, part = mine[order], bins[cells.trial[counted] == trial][order]
+        each = np.zeros((len(mine), 2, len(CHANNELS)))
+        each[np.arange(len(mine)), 1, cells.channel[mine]] = 1.0
+        each[:, 0] = each[:, 1] * (cells.fresh[mine] > _OFF)[:, None]
+        by_part = np.zeros((count, 2, len(CHANNELS)))
+        np.add.at(by_part, part, each)
+        begun, up_to = _sums(each), _sums(by_part)
+        before, inside = begun[_entries(part, count)[first, last]], up_to[last + 1] - up_to[first]
+        evidence[:, trial] = _evidence(before, inside, begun[-1] - before - inside) / comparison.alike
+    best = _shared(evidence)
+    if best is None:
+        return None
+    start, end = low + width * float(first[best]), low + width * float(last[best] + 1)
+    return _region("position_y_m", cells, place, counted, start, end)
+
+
+def _counted(cells: Cells) -> Mask:
+    """Return which numbers are of a field that has turned by half a cycle, shape (n,)."""
+    return np.asarray(~cells.outcome & (cells.time_s * cells.frequency_Hz >= 0.5))
+
+
+def _tally(cells: Cells, mask: Mask) -> Floats:
+    """Return how many numbers are off in each channel, and how many there are, shape (2, channels)."""
+    masks = (mask & (cells.fresh > _OFF), mask)
+    return np.stack([np.bincount(cells.channel[m], minlength=len(CHANNELS)) for m in masks]).astype(np.float64)
+
+
+def _sums(values: Floats) -> Floats:
+    """Return the sums of the first 0, 1, ... n along the first axis."""
+    return np.concatenate([np.zeros((1, *values.shape[1:])), np.cumsum(values, axis=0)])
+
+
+def _entries(part: Ints, count: int) -> Ints:
+    """Return after how many of its numbers a trial first comes to the parts from one to another, shape (count, count).
+
+    Parameters
+    ----------
+    part
+        The part of the way of each number, in the order of time, shape (n,).
+    count
+        How many parts there are.
+    """
+    first = np.full(count, len(part), dtype=np.intp)
+    np.minimum.at(first, part, np.arange(len(part)))
+    # Below the diagonal there is nothing between.
+    table = np.where(np.arange(count) >= np.arange(count)[:, None], first, len(part))
+    return np.asarray(np.minimum.accumulate(table, axis=1))
+
+
+def _log_likelihood(tally: Floats, share: Floats | float) -> Floats:
+    """Return ln L of tallies (..., 2, channels), shape (..., channels)."""
+    off, count = tally[..., 0, :], tally[..., 1, :]
+    return np.asarray(off * np.log(share) + (count - off) * np.log1p(-np.minimum(share, _ALL)))
+
+
+def _likeliest(tally: Floats) -> Floats:
+    share = tally[..., 0, :] / np.maximum(tally[..., 1, :], 1.0)
+    return _log_likelihood(tally, np.maximum(share, _BY_CHANCE))
+
+
+def _evidence(before: Floats, inside: Floats, past: Floats) -> Floats:
+    """Return Λ(S) but for a, shape (...), of tallies (..., 2, channels)."""
+    apart = _log_likelihood(before, _BY_CHANCE) + _likeliest(inside) + _likeliest(past)
+    return np.asarray(np.sum(apart - _likeliest(before + inside + past), axis=-1))
+
+
+def _shared(evidence: Floats) -> int | None:
+    """Return which region trials share, if they share one.
+
+    Parameters
+    ----------
+    evidence
+        Λ of each region in each trial, shape (regions, trials).
+    """
+    best = int(np.argmax(evidence.sum(axis=1)))
+    told, own = float(evidence[best].sum()), float(np.maximum(evidence.max(axis=0), 0.0).sum())
+    return best if told > _CLEAR + log(len(evidence)) and told >= _SHARED * own else None
+
+
+def _measured_y(comparison: Comparison, residual: Residual, cells: Cells) -> Floats:
+    """Return where along y the robot was seen, m, shape (n,): one that is held up is not where the model is."""
+    place = cells.y_m.copy()
+    for trial, reader in enumerate(comparison.readers):
+        seen = reader.observed.values.get("y", np.empty(0))
+        found = np.isfinite(seen)
+        if found.any():
+            mine = (cells.trial == trial) & ~cells.outcome
+            at_origin = seen[found] - residual.local[trial, 2]
+            place[mine] = np.interp(cells.time_s[mine], reader.observed.time_s[found], at_origin)
+    return place
+
+
+def _region(axis: str, cells: Cells, values: Floats, counted: Mask, low: float, high: float) -> Region | None:
+    """Return a region unless less of what is gained lies in it than of the numbers."""
+    inside = (values >= low) & (values <= high)
+    gained = np.where(counted, cells.fresh - cells.noise, 0.0)
+    share = float(np.sum(gained[inside]) / max(float(np.sum(gained)), 1e-12))
+    if share <= np.sum(inside & counted) / np.sum(counted):
+        return None
+    return Region(axis, min(share, 1.0), low, high, sigmas=float(np.sqrt(np.mean(cells.loss[inside]))))

@@ -1,0 +1,97 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tumblers.blind.law import Law
+from tumblers.blind.outside import PhaseJump, StickySpot
+from tumblers.blind.view import channels_of
+from tumblers.blind.world import watch
+from tumblers.dataset import Dataset, Track
+from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.localise import localise
+from tumblers.diagnosis.onset import begins_at_place, begins_at_time
+from tumblers.diagnosis.result import Region
+from tumblers.diagnosis.simulator import Simulator
+from tumblers.effects import get
+from tumblers.presets import drive
+
+from .lab import ANGLE_NOISE_DEG, FRAMES_PER_SECOND, POSITION_NOISE_M, measure, plan
+
+PLANNED = plan([(f"f{f:g}", drive(0.010, f), 0.0) for f in (2.0, 3.0, 5.0, 8.0)], duration_s=0.8)
+LONGER = plan([(f"f{f:g}", drive(0.010, f), 0.0) for f in (1.5, 2.0, 3.0, 4.0, 5.0, 8.0)], duration_s=1.1)
+
+
+def filmed(planned: Dataset, law: Law, *, seed: int, frames_per_second: float = FRAMES_PER_SECOND) -> Dataset:
+    """Return the tracks of a world with a law of its own, with noise and every clock late by a third of a frame."""
+    rng, trials = np.random.default_rng(seed), []
+    simulator = Simulator(planned, 1)
+    for i, trial in enumerate(planned.trials):
+        time = np.arange(0.0, trial.duration_s - 0.02, 1.0 / frames_per_second)
+        late = time + 0.3 / frames_per_second
+        seen = channels_of(watch(simulator.nominal(i), [law], late, trial=i, solver="reduced").poses)
+        names = {"x_m": POSITION_NOISE_M, "y_m": POSITION_NOISE_M, "z_m": POSITION_NOISE_M, "tilt_deg": ANGLE_NOISE_DEG}
+        channels = {name: seen[name] + rng.normal(0.0, noise, len(time)) for name, noise in names.items()}
+        trials.append(replace(trial, outcome=None, track=Track(time_s=time, channels=channels)))
+    return replace(planned, trials=tuple(trials))
+
+
+def compared(dataset: Dataset) -> Comparison:
+    return Comparison(dataset, Simulator(dataset, 1))
+
+
+def where(dataset: Dataset, axis: str) -> list[Region]:
+    comparison = compared(dataset)
+    regions, _ = localise(comparison, comparison.residual(comparison.nominal_paths), comparison.nominal_paths)
+    return [region for region in regions if region.axis == axis]
+
+
+def shared(region: Region, low: float, high: float) -> float:
+    """Return intersection over union."""
+    assert region.low is not None
+    assert region.high is not None
+    both = min(region.high, high) - max(region.low, low)
+    return both / (max(region.high, high) - min(region.low, low))
+
+
+def test_a_field_that_jumps_is_wrong_from_the_jump_on() -> None:
+    (time,) = where(filmed(PLANNED, PhaseJump(size=0.08, time_s=0.35, forwards=-1.0), seed=1), "time_s")
+    assert shared(time, 0.35, 0.8) > 0.85
+    assert time.share_of_gap > 0.8
+
+
+def test_a_sticky_place_is_found_where_it_is_and_not_where_the_robot_came_late_from_it() -> None:
+    place = 1.2e-3, 2.4e-3
+    law = StickySpot(size=0.2, place_m=place)
+    (found,) = where(filmed(LONGER, law, seed=2, frames_per_second=120.0), "position_y_m")
+    assert shared(found, *place) > 0.5
+
+
+@pytest.mark.parametrize(
+    ("effect", "vector"),
+    [
+        ("size_error", (1.03, 1.0)),
+        ("field_rolloff", (0.02,)),
+        ("viscous_drag", (0.03,)),
+        ("magnetization_misalignment", (6.0, 20.0)),
+        ("friction_coefficient", (0.4,)),
+    ],
+)
+def test_what_acts_all_along_sets_in_nowhere(effect: str, vector: tuple[float, ...]) -> None:
+    comparison = compared(measure(PLANNED, (get(effect).from_vector(vector),), seed=3, clock_frames=0.3))
+    paths = comparison.nominal_paths
+    residual = comparison.residual(paths)
+    # There is a gap.
+    assert np.mean(residual.over(range(len(paths))) ** 2) > 1.4
+    assert begins_at_time(comparison, residual, paths) is None
+    assert begins_at_place(comparison, residual, paths) is None
+
+
+@pytest.mark.parametrize("seed", [4, 5])
+def test_noise_sets_in_nowhere(seed: int) -> None:
+    comparison = compared(measure(PLANNED, seed=seed, clock_frames=0.3))
+    residual = comparison.residual(comparison.nominal_paths)
+    assert begins_at_time(comparison, residual, comparison.nominal_paths) is None
+    assert begins_at_place(comparison, residual, comparison.nominal_paths) is None
