@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 
 from tumblers.dataset import Dataset, Outcome
+from tumblers.diagnosis import built_floors
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.fit import _SHARES, Fitter
 from tumblers.diagnosis.simulator import Job, Simulator
 from tumblers.effects.base import Effect
+from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.effects.magnetization_misalignment import MagnetizationMisalignment
 
 from .lab import PLANS, measure, plan, without
@@ -90,3 +92,28 @@ def test_the_noise_that_is_taken_is_likelier_than_the_same_share_in_every_trial(
     assert (taken == min(alike)) == (len(set(shares)) == 1)
     # It matters which.
     assert max(alike) > taken + 1.0
+
+
+def test_a_floor_is_built_once_while_there_is_room(monkeypatch: pytest.MonkeyPatch) -> None:
+    comparison = compared(with_outcomes())
+    halved = [0.5] * len(comparison.readers)
+
+    def taken(effects: tuple[Effect, ...] = (), shares: list[float] | None = None) -> list[int]:
+        comparison.take_noise_of(effects, shares)
+        # Kept alive, or an address may serve again.
+        alive.append(comparison.floors)
+        return [id(floor) for floor in comparison.floors]
+
+    alive: list[object] = []
+    first, other = taken(), taken(shares=halved)
+    assert not set(first) & set(other)
+    assert (taken(), taken(shares=halved)) == (first, other)
+    # What is neutral moves nothing.
+    assert taken((FrictionCoefficient(factor=1.0),)) == first
+    assert not set(taken((FrictionCoefficient(factor=1.1),))) & set(first)
+    monkeypatch.setattr(built_floors, "_MOST_KEPT", 0)
+    determinant = comparison.log_determinant
+    taken(shares=halved)
+    assert not set(taken((FrictionCoefficient(factor=1.1),))) & set(first)
+    assert comparison.log_determinant == determinant
+    assert not set(taken()) & set(first)

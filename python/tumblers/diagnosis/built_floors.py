@@ -1,4 +1,4 @@
-"""`BuiltFloors`: floors that were built, kept as long as there is room: the search comes back to its best again and again."""
+"""`BuiltFloors`: floors that were built, kept while there is room, for the search comes back to its best."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ explained by being vague; how much of the changes is needed in a trial, a share 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
