@@ -12,7 +12,7 @@ from tumblers.blind.world import watch
 from tumblers.dataset import Dataset, Track
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.localise import localise
-from tumblers.diagnosis.onset import begins_at_place, begins_at_time
+from tumblers.diagnosis.onset import _shared, begins_at_place, begins_at_time
 from tumblers.diagnosis.result import Region
 from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects import get
@@ -60,6 +60,22 @@ def test_a_field_that_jumps_is_wrong_from_the_jump_on() -> None:
     (time,) = where(filmed(PLANNED, PhaseJump(size=0.08, time_s=0.35, forwards=-1.0), seed=1), "time_s")
     assert shared(time, 0.35, 0.8) > 0.85
     assert time.share_of_gap > 0.8
+
+
+def test_a_trial_that_cannot_be_run_says_nothing_of_when() -> None:
+    comparison = compared(filmed(PLANNED, PhaseJump(size=0.08, time_s=0.35, forwards=-1.0), seed=1))
+    paths = [path if trial != 2 else None for trial, path in enumerate(comparison.nominal_paths)]
+    time = begins_at_time(comparison, comparison.residual(paths), paths)
+    assert time is not None
+    assert shared(time, 0.35, 0.8) > 0.85
+
+
+def test_one_trial_alone_cannot_tell_a_place_from_a_time() -> None:
+    one, two = np.array([[1.0, 0.0], [20.0, 0.0]]), np.array([[1.0, 0.0], [20.0, 5.0]])
+    assert _shared(one) is None
+    assert _shared(two) == 1
+    # A region of its own would suit the second better.
+    assert _shared(np.array([[0.0, 25.0], [20.0, 5.0]])) is None
 
 
 def test_a_sticky_place_is_found_where_it_is_and_not_where_the_robot_came_late_from_it() -> None:

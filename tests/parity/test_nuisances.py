@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from tests.diagnosis.lab import measure, plan, without
 from tumblers.dataset import Dataset, Outcome
+from tumblers.diagnosis import built_floors
 from tumblers.diagnosis.comparison import Comparison, Residual
 from tumblers.diagnosis.floor import SHARED
 from tumblers.diagnosis.simulator import Job, Simulator
@@ -97,7 +98,8 @@ def test_with_a_perfect_sensor_nothing_is_fitted() -> None:
     assert_same(found, (plain.whitened(local, shared), local, shared))
 
 
-def test_a_floor_that_is_not_used_any_more_is_forgotten() -> None:
+def test_a_floor_that_there_is_no_room_for_is_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(built_floors, "_MOST_KEPT", 0)
     comparison = Comparison(off(), Simulator(off(), 1))
     comparison.residual(comparison.nominal_paths)
     forgotten = [weakref.ref(floor) for floor in comparison.floors]

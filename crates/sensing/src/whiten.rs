@@ -71,3 +71,23 @@ fn add<const N: usize>(sum: &mut [f64; N], weight: f64, values: &[f64; N]) {
         *s += weight * v;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_side_by_side_are_those_of_one_row_after_another_to_the_bit() {
+        for count in 0..10_usize {
+            let value = |r: usize, k: usize| ((7 * r + 3 * k + 1) as f64).sin();
+            let rows: Vec<Vec<f64>> = (0..count).map(|r| (0..count).map(|k| value(r, k)).collect()).collect();
+            let columns: Vec<[f64; 3]> = (0..count).map(|k| [value(k, 20), value(k, 30), 1e9 * value(k, 40)]).collect();
+            let mut found = Vec::new();
+            Whiten::new(rows.clone().into_iter()).unwrap().apply(&columns, &mut found);
+            let expected: Vec<[f64; 3]> = (0..count)
+                .map(|r| std::array::from_fn(|c| (0..=r).fold(0.0, |sum, k| sum + rows[r][k] * columns[k][c])))
+                .collect();
+            assert_eq!(found, expected);
+        }
+    }
+}

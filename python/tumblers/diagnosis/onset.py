@@ -15,8 +15,9 @@ off its course. The first half of a cycle does not count, for until then no caus
 whose field does not rotate.
 
 The likeliest S is told where it is three standard deviations clear, over all that were looked at, where more of what is
-gained lies in it than of the numbers, and where few trials had rather a region of their own: what a cause that acts all
-along adds up to shows in each trial at another time and place.
+gained lies in it than of the numbers, and where two trials or more speak for it and few had rather a region of their
+own: what a cause that acts all along adds up to shows in each trial at another time and place. The free shares of many
+channels reach the first of these bounds by chance; it is with the last that noise tells nothing.
 """
 
 from __future__ import annotations
@@ -68,7 +69,7 @@ def begins_at_time(comparison: Comparison, residual: Residual, paths: Sequence[P
         The model's.
     """
     cells = Cells.of(comparison, residual, paths)
-    counted = _counted(cells)
+    counted = _counted(cells, paths)
     if not counted.any():
         return None
     last = float(np.max(cells.time_s[counted]))
@@ -81,7 +82,7 @@ def begins_at_time(comparison: Comparison, residual: Residual, paths: Sequence[P
     for row, moment, then in zip(evidence, moments, seen, strict=True):
         before, after = (
             np.stack([_tally(then, mask & (then.trial == trial)) for trial in range(len(paths))])
-            for mask in (counted & (then.time_s < moment), counted & (then.time_s >= moment))
+            for mask in (counted & (then.time_s <= moment), counted & (then.time_s > moment))
         )
         row[:] = _evidence(before, after, np.zeros_like(after)) / comparison.alike
     best = _shared(evidence)
@@ -102,7 +103,7 @@ def begins_at_place(comparison: Comparison, residual: Residual, paths: Sequence[
     """
     cells = Cells.of(comparison, residual, paths)
     place = _measured_y(comparison, residual, cells)
-    counted = _counted(cells) & np.isfinite(place)
+    counted = _counted(cells, paths) & np.isfinite(place)
     if not counted.any():
         return None
     body = np.concatenate(comparison.dataset.robot.body().outline)
@@ -132,9 +133,10 @@ def begins_at_place(comparison: Comparison, residual: Residual, paths: Sequence[
     return _region("position_y_m", cells, place, counted, start, end)
 
 
-def _counted(cells: Cells) -> Mask:
-    """Return which numbers are of a field that has turned by half a cycle, shape (n,)."""
-    return np.asarray(~cells.outcome & (cells.time_s * cells.frequency_Hz >= 0.5))
+def _counted(cells: Cells, paths: Sequence[Path | None]) -> Mask:
+    """Return which numbers are of a trial that was run and a field that has turned by half a cycle, shape (n,)."""
+    was_run = np.array([path is not None for path in paths])[cells.trial]
+    return np.asarray(was_run & ~cells.outcome & (cells.time_s * cells.frequency_Hz >= 0.5))
 
 
 def _tally(cells: Cells, mask: Mask) -> Floats:
@@ -191,6 +193,8 @@ def _shared(evidence: Floats) -> int | None:
         Λ of each region in each trial, shape (regions, trials).
     """
     best = int(np.argmax(evidence.sum(axis=1)))
+    if np.count_nonzero(evidence[best] > 0.0) < 2:
+        return None
     told, own = float(evidence[best].sum()), float(np.maximum(evidence.max(axis=0), 0.0).sum())
     return best if told > _CLEAR + log(len(evidence)) and told >= _SHARED * own else None
 
@@ -215,4 +219,4 @@ def _region(axis: str, cells: Cells, values: Floats, counted: Mask, low: float, 
     share = float(np.sum(gained[inside]) / max(float(np.sum(gained)), 1e-12))
     if share <= np.sum(inside & counted) / np.sum(counted):
         return None
-    return Region(axis, min(share, 1.0), low, high, sigmas=float(np.sqrt(np.mean(cells.loss[inside]))))
+    return Region(axis, min(share, 1.0), low, high, sigmas=float(np.sqrt(np.mean(cells.loss[inside & counted]))))

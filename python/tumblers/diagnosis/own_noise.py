@@ -114,7 +114,7 @@ def settled(
     most
         How many at most where others would lead if they gained about as much by it.
     fitted
-        Whether all of them were so before, in other steps: what leads after `most`, flattered by the noise around
+        Whether they were fitted before, in other steps: what leads after `most`, flattered by the noise around
         another, is then fitted on only if it still leads against its own.
     """
     made = likeliest_first(contenders)
