@@ -8,7 +8,7 @@ use crate::recording::Ended;
 use crate::rollout::Rollout;
 use crate::{Metrics, SolverKind, Stepper, Trial};
 use rayon::ThreadPoolBuilder;
-use std::cmp::Reverse;
+use rayon::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -116,21 +116,8 @@ fn each<T: Send>(
     if threads == 1 {
         return Ok(trials.iter().enumerate().map(|(i, trial)| guarded((i, trial))).collect());
     }
-    // The longest first: the shorter ones fill what time is left on each thread.
-    let mut order: Vec<usize> = (0..trials.len()).collect();
-    order.sort_by_key(|i| Reverse(trials[*i].steps()));
-    let next = AtomicUsize::new(0);
     let pool = ThreadPoolBuilder::new().num_threads(threads).build()?;
-    let done = pool.broadcast(|_| {
-        let mut mine = Vec::new();
-        while let Some(i) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
-            mine.push((*i, guarded((*i, &trials[*i]))));
-        }
-        mine
-    });
-    let mut outcomes: Vec<(usize, Outcome<T>)> = done.into_iter().flatten().collect();
-    outcomes.sort_by_key(|(i, _)| *i);
-    Ok(outcomes.into_iter().map(|(_, outcome)| outcome).collect())
+    Ok(pool.install(|| trials.par_iter().enumerate().with_max_len(1).map(guarded).collect()))
 }
 
 /// Runs `trial` to its end or to that of `watch`, which sees every step.
