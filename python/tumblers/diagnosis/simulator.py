@@ -279,13 +279,17 @@ class Simulator:
         orientation = rollout["orientation"][:rows]
         # One sign along the path, so that neighbours can be averaged.
         same = np.einsum("ij,ij->i", orientation[1:], orientation[:-1]) >= 0.0
-        if not same.all():
-            orientation = orientation * np.concatenate([[1.0], np.cumprod(np.where(same, 1.0, -1.0))])[:, None]
+        sign = np.concatenate([[1.0], np.cumprod(np.where(same, 1.0, -1.0))])
+        orientation = orientation * sign[:, None]
         offset = scenario.robot.center_of_mass_m
         if self.dataset.sensor.tracked_point == "body_centre" and any(offset):
             position = position - _turned(orientation, np.array(offset))
-        interval = every * scenario.run.fixed_step_s
-        return Path(interval, position, orientation, rollout["contact_mode"][:rows])
+        return Path(
+            interval_s=every * scenario.run.fixed_step_s,
+            position_m=position,
+            orientation=orientation,
+            contact_mode=rollout["contact_mode"][:rows],
+        )
 
 
 def _unseen(scenario: Scenario) -> Scenario:
