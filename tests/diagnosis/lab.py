@@ -12,9 +12,12 @@ import pytest
 
 from tumblers import _core
 from tumblers.dataset import Dataset, LabTrial, Outcome, Sensor, Track
+from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.fit import Fitter
 from tumblers.diagnosis.pose import body_axis, heading_of, tilt_of
-from tumblers.diagnosis.simulator import Job, Simulator
+from tumblers.diagnosis.simulator import LONGEST_STEP_S, Job, Simulator
 from tumblers.effects.base import Effect
+from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.field import Field, StaticField
 from tumblers.model import Model
 from tumblers.presets import ROBOTS, SUBSTRATES, drive
@@ -31,6 +34,13 @@ PLANS: tuple[tuple[str, Field, float], ...] = (
     ("s30", drive(0.020, 2.0), 30.0),
     ("still", UPWARDS, 0.0),
 )
+OFF = StaticField(strength_T=0.0, direction=(0.0, 1.0, 0.0))
+# A robot that lies on a slope: it slides where friction is a quarter below the nominal one.
+LYING: tuple[tuple[str, Field, float], ...] = (("lying", OFF, 50.0),)
+
+
+def quiet(_phase: str, _done: int, _total: int) -> None:
+    """Tell nobody."""
 
 
 def rollouts_made(monkeypatch: pytest.MonkeyPatch) -> list[int]:
@@ -144,3 +154,24 @@ def without(dataset: Dataset, trial: str, lost: slice) -> Dataset:
         replace(t, track=blind(t.track)) if t.id == trial and t.track is not None else t for t in dataset.trials
     )
     return replace(dataset, trials=trials)
+
+
+def coarse_lab(*truth: Effect) -> Fitter:
+    """Return what was measured in a fine step, before a nominal model in a step that nothing asked to be shorter."""
+    dataset = measure(plan(PLANS[:3]), truth, divisor=16)
+    comparison = Comparison(dataset, Simulator(dataset))
+    comparison.simulator.step_s = [LONGEST_STEP_S] * len(dataset.trials)
+    comparison._start()
+    return Fitter(comparison)
+
+
+def sliding_factor(slope_deg: float = 50.0) -> float:
+    """Return a factor of friction with which the body slides by about half its length."""
+    simulator = Simulator(plan((("lying", OFF, slope_deg),)))
+    low, high = 0.3, 1.0
+    for _ in range(20):
+        middle = 0.5 * (low + high)
+        path = simulator.run([Job(0, (FrictionCoefficient(factor=middle),))])[0]
+        assert path is not None
+        low, high = (middle, high) if path.position_m[-1, 1] < -4e-4 else (low, middle)
+    return low

@@ -24,7 +24,7 @@ from tumblers.effects import CATALOGUE, get, load_file
 from tumblers.field import StaticField, TableField
 from tumblers.presets import drive
 
-from .lab import PLANS, measure, plan, without
+from .lab import OFF, PLANS, measure, plan, without
 
 CONSIDERED = ("size_error", "friction_coefficient", "viscous_drag")
 EXAMPLE = Path(__file__).parents[2] / "examples" / "aluminium_30deg"
@@ -148,8 +148,7 @@ def _noted(name: str, outcome: Outcome, still: bool = False) -> Dataset:
 def _slid(way_m: float) -> Dataset:
     """Two tracks that the model follows, and a robot without a field, seen at the start and a way further down."""
     track = Track(time_s=np.array([0.0, 0.5]), channels={"x_m": np.zeros(2), "y_m": np.array([0.0, -way_m])})
-    off = StaticField(strength_T=0.0, direction=(0.0, 1.0, 0.0))
-    trial = LabTrial(id="slid", field=off, duration_s=0.5, incline_deg=30.0, track=track)
+    trial = LabTrial(id="slid", field=OFF, duration_s=0.5, incline_deg=30.0, track=track)
     data = measure(plan(PLANS[:2]))
     return replace(data, trials=(*data.trials, trial))
 

@@ -21,10 +21,9 @@ from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.pose import Path
 from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects.friction_coefficient import FrictionCoefficient
-from tumblers.field import StaticField
 from tumblers.presets import drive
 
-from .lab import UPWARDS, measure, plan, without
+from .lab import LYING, OFF, UPWARDS, measure, plan, without
 
 Floats = NDArray[np.float64]
 
@@ -120,10 +119,7 @@ def test_what_all_trials_share_is_not_fitted_to_a_trial_that_is_left_out(monkeyp
 
 def lying_and_still() -> tuple[Fitter, Contender]:
     """Return the fit of a friction that only the first of two trials shows: a body on a slope, and one on the level."""
-    off = StaticField(strength_T=0.0, direction=(0.0, 1.0, 0.0))
-    dataset = measure(
-        plan([("lying", off, 50.0), ("still", off, 0.0)], duration_s=0.3), (FrictionCoefficient(factor=0.5),)
-    )
+    dataset = measure(plan([*LYING, ("still", OFF, 0.0)], duration_s=0.3), (FrictionCoefficient(factor=0.5),))
     fitter = Fitter(Comparison(dataset, Simulator(dataset, 1)))
     hypothesis = Hypothesis.of(FrictionCoefficient, [fitter.comparison.simulator.nominal(i) for i in fitter.trials])
     there = (np.array([0.5]) - hypothesis.neutral) / hypothesis.scale

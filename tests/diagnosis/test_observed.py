@@ -16,9 +16,8 @@ from tumblers.diagnosis.simulator import Job, Simulator
 from tumblers.effects.adhesion_coefficient import AdhesionCoefficient
 from tumblers.field import StaticField
 
-from .lab import plan
+from .lab import OFF, plan
 
-HOLD = StaticField(strength_T=0.0, direction=(0.0, 1.0, 0.0))
 TIME_S = np.arange(30) / 60.0
 
 
@@ -34,7 +33,7 @@ def seen(field: StaticField, way_m: float, acceleration_m_per_s2: float = 1.0) -
 
 
 def test_of_a_robot_that_slides_without_a_field_half_of_its_way_is_compared_and_that_it_slides() -> None:
-    (observed,) = observe(seen(HOLD, 6e-4))
+    (observed,) = observe(seen(OFF, 6e-4))
     assert observed.slid_m == pytest.approx(6e-4)
     assert_allclose(observed.time_s, TIME_S[0.5 * TIME_S**2 <= 3e-4])
     assert observed.frames == 30
@@ -43,13 +42,13 @@ def test_of_a_robot_that_slides_without_a_field_half_of_its_way_is_compared_and_
 
 @pytest.mark.parametrize(("strength_T", "way_m"), [(0.003, 6e-4), (0.0, 1e-4)])
 def test_a_robot_that_holds_or_that_a_field_moves_is_compared_to_the_end(strength_T: float, way_m: float) -> None:
-    (observed,) = observe(seen(replace(HOLD, strength_T=strength_T), way_m))
+    (observed,) = observe(seen(replace(OFF, strength_T=strength_T), way_m))
     assert observed.slid_m == 0.0
     assert len(observed.time_s) == 30
 
 
 def test_a_model_that_slides_is_nearer_to_a_robot_that_does_than_one_that_holds() -> None:
-    dataset = seen(HOLD, 6e-4)
+    dataset = seen(OFF, 6e-4)
     comparison = Comparison(dataset, Simulator(dataset, 1))
     (reader,) = comparison.readers
     assert reader.outcome_kinds == ("slides",)
@@ -63,7 +62,7 @@ def test_a_model_that_slides_is_nearer_to_a_robot_that_does_than_one_that_holds(
 
 
 def test_of_a_model_that_slides_counts_what_a_late_camera_sees_of_it() -> None:
-    dataset = seen(HOLD, 6e-4)
+    dataset = seen(OFF, 6e-4)
     comparison = Comparison(dataset, Simulator(dataset, 1))
     (reader,) = comparison.readers
     (slid,) = comparison.simulator.run([Job(0, (AdhesionCoefficient(factor=0.0),))])

@@ -1,0 +1,44 @@
+"""How a hypothesis is a point: the coordinates of a fit."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from tumblers.diagnosis.hypothesis import Hypothesis
+from tumblers.diagnosis.simulator import Simulator
+from tumblers.effects.base import Effect
+from tumblers.effects.catalogue import CATALOGUE
+from tumblers.effects.magnetization_misalignment import MagnetizationMisalignment
+
+from .lab import plan
+
+
+@pytest.mark.parametrize("name", CATALOGUE)
+def test_the_coordinates_of_a_fit_are_the_parameters_again(name: str) -> None:
+    kind = CATALOGUE[name]
+    scenario = Simulator(plan()).nominal(0)
+    for start in kind.starts(scenario):
+        assert_allclose(kind.from_fit(kind.to_fit(start)), start, rtol=1e-12, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", CATALOGUE)
+def test_neutral_is_neutral_to_the_last_bit_in_the_coordinates_of_a_fit(name: str) -> None:
+    hypothesis = Hypothesis.of(CATALOGUE[name], [Simulator(plan()).nominal(0)])
+    (effect,) = hypothesis.effects(np.zeros(len(hypothesis.neutral)))
+    assert effect.is_neutral()
+
+
+def test_a_misalignment_is_smooth_around_neutral_and_has_no_end_at_half_a_turn() -> None:
+    hypothesis = Hypothesis.of(MagnetizationMisalignment, [Simulator(plan()).nominal(0)])
+    assert_allclose(hypothesis.values([0.0, 0.0])[0], 0.0)
+    before, after = hypothesis.values([-0.2, 1e-6]), hypothesis.values([-0.2, -1e-6])
+    assert_allclose(before[0], after[0], rtol=1e-6)
+    assert_allclose(before[1] - after[1], 360.0, rtol=1e-4)
+    axes = [effect.edit(Simulator(plan()).nominal(0)).robot.magnetic_axis for effect in _both(hypothesis)]
+    assert_allclose(axes[0], axes[1], atol=1e-6)
+
+
+def _both(hypothesis: Hypothesis) -> list[Effect]:
+    return [hypothesis.effects(point)[0] for point in ([-0.2, 1e-6], [-0.2, -1e-6])]

@@ -1,0 +1,56 @@
+"""Pairs of effects, and the firsts from which they are made."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from tumblers.diagnosis.comparison import Comparison, Residual
+from tumblers.diagnosis.contender import of_fit, of_nominal
+from tumblers.diagnosis.fit import Fitter
+from tumblers.diagnosis.hypothesis import Hypothesis
+from tumblers.diagnosis.pairs import Pairs, firsts
+from tumblers.diagnosis.simulator import Simulator
+from tumblers.effects.friction_coefficient import FrictionCoefficient
+from tumblers.effects.size_error import SizeError
+
+from .lab import LYING, coarse_lab, measure, plan
+
+
+@pytest.mark.parametrize("log_determinant", [0.0, -900.0])
+def test_the_best_is_always_a_first_and_what_is_far_behind_is_not(log_determinant: float) -> None:
+    dataset = measure(plan(LYING))
+    nominal = of_nominal(Fitter(Comparison(dataset, Simulator(dataset))))
+    costs = (400.0, 580.0, 620.0)
+    contenders = [replace(nominal, cost=cost, log_determinant=log_determinant) for cost in costs]
+    assert [contender.cost for contender in firsts(contenders)] == [400.0, 580.0]
+
+
+def test_a_first_of_a_pair_is_held_against_its_own_noise(monkeypatch: pytest.MonkeyPatch) -> None:
+    fitter = coarse_lab(SizeError(length_factor=1.03))
+    fitter.take_likeliest_noise(())
+    possible = [
+        Hypothesis.of(kind, [fitter.comparison.simulator.nominal(i) for i in fitter.trials])
+        for kind in (SizeError, FrictionCoefficient)
+    ]
+    singles = [
+        of_fit(fitter, fitter.fit(h, np.full(len(h.neutral), 0.01 * k), evaluations=1))
+        for k, h in enumerate(possible, 1)
+    ]
+    seen: list[Any] = []
+    scan = Fitter.scan
+
+    def noted(self: Fitter, hypotheses: Any, base: Any, still: Residual, slopes: Any) -> Any:
+        seen.append((still, self.again(replace(singles[0].fit, point=base[0][: len(possible[0].neutral)])).residual))
+        return scan(self, hypotheses, base, still, slopes)
+
+    monkeypatch.setattr(Fitter, "scan", noted)
+    Pairs(fitter, possible, {}).add(singles[0], singles)
+    ((still, own),) = seen
+    for found, expected in zip(still.trials, own.trials, strict=True):
+        assert_allclose(found, expected, rtol=1e-9, atol=1e-9)
+    assert not np.allclose(still.over(fitter.trials), singles[0].residual.over(fitter.trials), rtol=1e-6)

@@ -1,0 +1,49 @@
+"""Thresholds of one trial, from which a fit starts."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.contender import of_nominal
+from tumblers.diagnosis.fit import Fitter
+from tumblers.diagnosis.hypothesis import Hypothesis
+from tumblers.diagnosis.search import Search
+from tumblers.diagnosis.simulator import Simulator
+from tumblers.diagnosis.thresholds import CLEAR, beyond_thresholds
+from tumblers.effects.friction_coefficient import FrictionCoefficient
+
+from .lab import LYING, OFF, PLANS, measure, plan, quiet, sliding_factor
+
+
+@pytest.mark.parametrize("slope_deg", [50.0, 60.0])
+def test_a_threshold_in_a_range_is_found_far_from_neutral_and_near(slope_deg: float) -> None:
+    # Friction just low enough to slide: of no use is a derivative where nothing moves, nor a start far beyond.
+    lying = (("lying", OFF, slope_deg),)
+    truth = FrictionCoefficient(factor=sliding_factor(slope_deg))
+    dataset = measure(plan(lying), (truth,))
+    comparison = Comparison(dataset, Simulator(dataset))
+    fitter = Fitter(comparison)
+    search = Search(fitter, [FrictionCoefficient], quiet, 0)
+    nominal = of_nominal(fitter)
+    best = min(search.contenders(), key=lambda c: c.cost)
+    assert nominal.cost > 100.0
+    assert best.names == ("friction_coefficient",)
+    (found,) = best.effects
+    assert isinstance(found, FrictionCoefficient)
+    assert found.factor == pytest.approx(truth.factor, rel=0.01)
+
+
+def test_a_threshold_of_one_trial_is_found_beside_others_whose_cameras_are_off() -> None:
+    # The others' nuisances are at their ends, and what that costs is none of this trial's.
+    truth = FrictionCoefficient(factor=sliding_factor())
+    dataset = measure(plan([*LYING, *PLANS[:3]]), (truth,), origin_m=2e-4, clock_frames=0.6)
+    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
+    nominal = of_nominal(fitter).residual
+    assert float(np.sum(nominal.prior**2)) > CLEAR
+    hypothesis = Hypothesis.of(FrictionCoefficient, [fitter.comparison.simulator.nominal(i) for i in fitter.trials])
+    first, *_ = beyond_thresholds(fitter, hypothesis, nominal)
+    (found,) = hypothesis.effects(first)
+    assert isinstance(found, FrictionCoefficient)
+    assert found.factor == pytest.approx(truth.factor, rel=0.01)
