@@ -21,6 +21,7 @@ from tumblers.diagnosis.reading import reached
 from tumblers.diagnosis.simulator import Simulator
 from tumblers.diagnosis.words import summary
 from tumblers.effects import CATALOGUE, get, load_file
+from tumblers.effects.size_error import SizeError
 from tumblers.field import StaticField, TableField
 from tumblers.presets import drive
 
@@ -312,6 +313,17 @@ def test_a_track_of_one_frame_counts_for_what_it_is() -> None:
     short = Track(time_s=first.time_s[[5]], channels={name: values[[5]] for name, values in first.channels.items()})
     data = replace(data, trials=(replace(data.trials[0], track=short), *data.trials[1:]))
     assert diagnose(data, effects=CONSIDERED, jobs=2).verdict == "no_gap"
+
+
+def test_a_track_of_the_first_frame_alone_has_no_missing_wrench() -> None:
+    # A tracker that loses the robot at once: there is a gap, but in none of the time that this one shows.
+    data = measure(plan(PLANS[:3]), (SizeError(length_factor=1.3),))
+    track = Track(time_s=np.array([0.0]), channels={"x_m": np.zeros(1), "y_m": np.zeros(1)})
+    data = replace(data, trials=(replace(data.trials[0], track=track), *data.trials[1:]))
+    diagnosis = diagnose(data, effects=CONSIDERED, jobs=2)
+    assert diagnosis.verdict != "no_gap"
+    assert diagnosis.missing_wrench is not None
+    assert diagnosis.floors[0].frames == 1
 
 
 def test_an_effect_of_ones_own_is_found(tmp_path: Path) -> None:

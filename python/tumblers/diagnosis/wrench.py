@@ -50,6 +50,8 @@ _SHARES = (1.0, 0.5, 0.2)
 _MOST_TRIALS, _MOST_WINDOWS, _MOST_IN_ALL = 12, 12, 48
 _MOST_STEPS = 1_500_000
 _WINDOWS_AT_REST = 4
+# Frames that end before so many steps have passed say nothing of what is missing.
+_LEAST_STEPS = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,7 +131,9 @@ def _chosen(comparison: Comparison, residual: Residual, paths: Sequence[Path | N
     tracked = [
         i
         for i, path in enumerate(paths)
-        if path is not None and any(k.any() for k in comparison.floors[i].valid.values())
+        if path is not None
+        and any(k.any() for k in comparison.floors[i].valid.values())
+        and _end_s(comparison, i) >= _LEAST_STEPS * comparison.simulator.nominal(i).run.fixed_step_s
     ]
     off = {i: float(np.mean(np.minimum(residual.trials[i] ** 2, HUBER**2))) for i in tracked}
     most = max(1, min(_MOST_TRIALS, most_windows // _WINDOWS_AT_REST))

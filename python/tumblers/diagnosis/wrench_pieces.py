@@ -80,7 +80,7 @@ def along(frequency_Hz: float, end_s: float, most: int) -> Pieces:
         Number of windows at most.
     """
     quarters = _QUARTERS * frequency_Hz * end_s
-    each = ceil(quarters / most - 1e-9)
+    each = max(1, ceil(quarters / most - 1e-9))
     count = max(1, ceil(quarters / each - 0.25))
     edges = np.append(np.arange(count) * each / (_QUARTERS * frequency_Hz), end_s)
     return Pieces(edges, np.arange(count))
