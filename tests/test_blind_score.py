@@ -63,7 +63,13 @@ def said(
             for name, parameters in effects
         ],
         "ranking": [{"effects": [name for name, _ in effects], "probability": probability}],
-        "gap": {"shrink": None if shrink is None else {"estimate": shrink, "low": 0.0, "high": 1.0}},
+        "gap": {
+            "noise_floor": 1.0,
+            "before": 11.0,
+            "after_nuisance_only": 6.0,
+            "after": 11.0 - 10.0 * (shrink or 0.0),
+            "shrink": None if shrink is None else {"estimate": shrink, "low": 0.0, "high": 1.0},
+        },
         "where": list(where),
         "next_trials": [],
     }
@@ -156,8 +162,13 @@ def test_scores_are_those_computed_by_hand() -> None:
     assert scores.overlaps["dataset-001"] == pytest.approx(1 / 3)
     # 10: 0.4 of 0.6 s; 12: 0.6 of 2 s.
     assert (scores.regions["time_s"].hits, scores.regions["time_s"].count) == (1, 2)
-    # Trials and regions together.
-    assert value(scores, "where") == pytest.approx((1 + 1) / (len(scores.overlaps) + 2))
+    assert value(scores, "where: affected trials") == pytest.approx(1 / len(scores.overlaps))
+    assert value(scores, "where: regions") == 0.5
+    # a and b of a, b and c are affected: whoever points out all three has two thirds right.
+    assert list(scores.everywhere.values()) == [pytest.approx(2 / 3)] * len(scores.overlaps)
+    # Half of 10 over the floor by the sensor; of the 5 that it leaves 0.95 leave 0.5, and 0.75 leave 2.5.
+    assert scores.shrinks["the catalogue's form"] == (0.5, 0.95, pytest.approx(0.9))
+    assert scores.shrinks["another form"] == (0.5, 0.75, pytest.approx(0.5))
     assert value(scores, "longest") is None, "nothing was diagnosed again"
     assert value(scores, "diagnosed again") is None
     assert scores.seconds_longest == 200.0

@@ -9,7 +9,9 @@ from ..diagnosis.floor import TOLERANCES
 from .draw import QUIET_SIGMA, QUIET_TRIAL_SIGMA, REPEATS
 from .jitter import DIMENSIONS, NUMBERS
 from .layout import STEADY_SIGMA
-from .score import TIE_SIGMA, Criterion, Scores, Share
+from .overlap import halves
+from .score import TIE_SIGMA, Criterion, Scores
+from .share import Share
 
 __all__ = ["page_of", "print_scores"]
 
@@ -82,6 +84,14 @@ def page_of(scores: Scores) -> str:
             ("effect", "inside", "of"),
             [(name, _percent(s.share), str(s.count)) for name, s in scores.coverage_by_effect.items()],
         ),
+        "## Shrink",
+        "Medians over single causes of 3 sigma or more, on trials that no fit saw. A shrink counts from a perfect "
+        "sensor and the numbers as stated: refitting the clock, the origin, the heading and the scale alone shrinks "
+        "the gap too, and of what that leaves, so much is the effects' own.",
+        _table(
+            ("form", "the sensor alone", "with the effects", "of what the sensor leaves"),
+            [(form, *map(_number, medians)) for form, medians in scores.shrinks.items()],
+        ),
         "## Where",
         "Overlap of the trials that were pointed out with those that the causes affect by 1 sigma or more (what both "
         "share over all of them), where that is a part of the trials; and regions of other axes in which a cause acts, "
@@ -89,7 +99,11 @@ def page_of(scores: Scores) -> str:
         "everything does not count.",
         _table(
             ("axis", "by half or more", "of"),
-            [_share_row("trial", _halves(scores)), *(_share_row(axis, s) for axis, s in scores.regions.items())],
+            [
+                _share_row("trial", halves(scores.overlaps)),
+                _share_row("trial, if every one were pointed out", halves(scores.everywhere)),
+                *(_share_row(axis, s) for axis, s in scores.regions.items()),
+            ],
         ),
         "## Time",
         f"Mean {_number(scores.seconds_mean, 1)} s, longest {_number(scores.seconds_longest, 1)} s; wall time, each "
@@ -185,10 +199,6 @@ def _confusion(scores: Scores) -> str:
     said = sorted({word for row in scores.confusion.values() for word in row})
     rows = [(truth, *(str(row.get(word, "")) for word in said)) for truth, row in scores.confusion.items()]
     return _table(("truth", *said), rows)
-
-
-def _halves(scores: Scores) -> Share:
-    return Share(sum(overlap >= 0.5 for overlap in scores.overlaps.values()), len(scores.overlaps))
 
 
 def _share_row(axis: str, share: Share) -> tuple[str, str, str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from math import inf
 from os import PathLike
@@ -15,33 +15,23 @@ from ..errors import InputError, TumblersError
 from .forms import law_of
 from .jitter import Jitter
 from .law import EffectLaw
+from .overlap import CLEAR, all_trials, halves, overlap, pointed_out, regions
 from .records import Record, read_records
+from .share import Share, share_of, together
 from .ties import difference_sigma, effect_of
 
-__all__ = ["Criterion", "Scores", "Share", "TieCheck", "score", "score_records"]
+__all__ = ["Criterion", "Scores", "TieCheck", "score", "score_records"]
 
 FORMAT = "tumblers-blind-scores/1"
 STRENGTH_BINS = ((0.0, 1.0), (1.0, 3.0), (3.0, 10.0), (10.0, inf))
 PROBABILITY_BINS = ((0.0, 0.2), (0.2, 0.4), (0.4, 0.6), (0.6, 0.8), (0.8, 1.0))
 # An effect named for another one is a tie where what it says differs from the true world by less than the noise.
 TIE_SIGMA = 1.0
-_CLEAR = 3.0
 _SLOWEST_S = 180.0
+# Whether a cause acts as the catalogue has it.
+_FORMS = {"the catalogue's form": True, "another form": False}
 
 TieCheck = Callable[[Record], float]
-
-
-@dataclass(frozen=True, slots=True)
-class Share:
-    """How many of how many."""
-
-    hits: int
-    count: int
-
-    @property
-    def share(self) -> float | None:
-        """Hits over count; None of none."""
-        return self.hits / self.count if self.count else None
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -95,10 +85,14 @@ class Scores:
         Expected calibration error over these bins.
     coverage_by_effect
         Effect to how many of its parameters were inside their 90 % interval.
-    overlaps
-        Dataset to the overlap of the trials that were pointed out with those affected.
+    overlaps, everywhere
+        Dataset to the overlap of the trials that were pointed out with those affected; and with all trials, what would
+        be found if every one were pointed out.
     regions
         Axis to how many regions in which a cause acts were overlapped, intersection over union, by half or more.
+    shrinks
+        Form to the medians of what refitting the sensor alone shrinks, of the shrink with the effects, and of what the
+        effects shrink of what the sensor leaves.
     seconds_mean, seconds_longest, threads
         Time of a diagnosis, s, and the most threads that one had.
     repeated_longest, repeated_threads, repeated_cores
@@ -121,6 +115,8 @@ class Scores:
     calibration_error: float | None
     coverage_by_effect: Mapping[str, Share]
     overlaps: Mapping[str, float]
+    everywhere: Mapping[str, float]
+    shrinks: Mapping[str, tuple[float | None, float | None, float | None]]
     regions: Mapping[str, Share]
     seconds_mean: float | None
     seconds_longest: float | None
@@ -181,18 +177,16 @@ def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores
         Returns by how many sigma the truth and the diagnosed effects of a record differ on its trials.
     """
     kinds = {kind: [r for r in records if r.answer.kind == kind] for kind in ("none", "one", "two", "outside")}
-    clear = [r for r in kinds["one"] if r.answer.strength_sigma >= _CLEAR]
+    clear = [r for r in kinds["one"] if r.answer.strength_sigma >= CLEAR]
     first = [_named_first(r) for r in clear]
     tied = [hit or _is_tie(r, tie) for hit, r in zip(first, clear, strict=True)]
     reliability, calibration_error = _calibration(records)
     coverage = _coverage(records)
-    covered = _all(coverage.values())
-    overlaps = {r.dataset: overlap for r in records if (overlap := _overlap(r)) is not None}
-    regions = _regions(records)
-    found = [_count([overlap >= 0.5 for overlap in overlaps.values()]), *regions.values()]
-    shrinks = {
-        same: [s for r in clear if r.same_form == same and (s := _shrink(r)) is not None] for same in (True, False)
-    }
+    covered = together(coverage.values())
+    overlaps = {r.dataset: found for r in records if (found := overlap(r, pointed_out(r))) is not None}
+    everywhere = {r.dataset: found for r in records if (found := overlap(r, all_trials(r))) is not None}
+    by_axis = regions(records)
+    shrinks = {form: _shrinks([r for r in clear if r.same_form == same]) for form, same in _FORMS.items()}
     seconds = [r.seconds for r in records if r.seconds is not None]
     repeated = [r.repeated_seconds for r in records if r.repeated_seconds is not None]
     longest = next((r for r in records if repeated and r.repeated_seconds == max(repeated)), None)
@@ -201,17 +195,18 @@ def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores
     def criterion(words: str, share: Share, low: float, high: float = 1.0) -> Criterion:
         return Criterion(words=words, value=share.share, low=low, high=high, count=share.count)
 
-    def middle(words: str, values: Sequence[float], low: float) -> Criterion:
-        return Criterion(words=words, value=median(values) if values else None, low=low, high=1.0, count=len(values))
+    def middle(form: str, low: float) -> Criterion:
+        count = sum(r.same_form == _FORMS[form] and _shrink(r) is not None for r in clear)
+        return Criterion(words=f"median shrink, {form}", value=shrinks[form][1], low=low, high=1.0, count=count)
 
     criteria = (
         Criterion(words="datasets", value=float(len(records)), low=100.0, high=inf, count=len(records)),
-        criterion("one effect of 3 sigma or more: named first", _count(first), 0.90),
-        criterion("one effect of 3 sigma or more: named first or truly tied", _count(tied), 0.97),
-        criterion("two effects: both named", _count([set(r.truth) <= set(r.named) for r in kinds["two"]]), 0.70),
-        criterion("no effect: no_gap", _count([r.verdict == "no_gap" for r in kinds["none"]]), 0.95),
+        criterion("one effect of 3 sigma or more: named first", share_of(first), 0.90),
+        criterion("one effect of 3 sigma or more: named first or truly tied", share_of(tied), 0.97),
+        criterion("two effects: both named", share_of([set(r.truth) <= set(r.named) for r in kinds["two"]]), 0.70),
+        criterion("no effect: no_gap", share_of([r.verdict == "no_gap" for r in kinds["none"]]), 0.95),
         criterion(
-            "outside the catalogue: unexplained", _count([r.verdict == "unexplained" for r in kinds["outside"]]), 0.85
+            "outside the catalogue: unexplained", share_of([r.verdict == "unexplained" for r in kinds["outside"]]), 0.85
         ),
         criterion("parameters inside their 90 % interval", covered, 0.80, 0.97),
         Criterion(
@@ -221,9 +216,10 @@ def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores
             high=0.1,
             count=sum(count for _, _, count in reliability.values()),
         ),
-        middle("median shrink, the catalogue's form", shrinks[True], 0.9),
-        middle("median shrink, another form", shrinks[False], 0.7),
-        criterion("where: trials and other regions overlapped by half or more", _all(found), 0.80),
+        middle("the catalogue's form", 0.9),
+        middle("another form", 0.7),
+        criterion("where: affected trials overlapped by half or more", halves(overlaps), 0.80),
+        criterion("where: regions of other axes overlapped by half or more", together(by_axis.values()), 0.80),
         Criterion(
             words="longest of the slowest again, alone, s",
             value=max(repeated) if repeated else None,
@@ -231,7 +227,7 @@ def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores
             high=_SLOWEST_S,
             count=len(repeated),
         ),
-        criterion("diagnosed again: the same answer", _count(same), 1.0),
+        criterion("diagnosed again: the same answer", share_of(same), 1.0),
     )
     return Scores(
         seed=seed,
@@ -240,7 +236,7 @@ def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores
         diagnosed=sum(r.diagnosis is not None for r in records),
         confusion=_confusion(records),
         by_strength={
-            _bin_name(low, high): _count(
+            _bin_name(low, high): share_of(
                 [_named_first(r) for r in kinds["one"] if low <= r.answer.strength_sigma < high]
             )
             for low, high in STRENGTH_BINS
@@ -250,7 +246,9 @@ def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores
         calibration_error=calibration_error,
         coverage_by_effect=coverage,
         overlaps=overlaps,
-        regions=regions,
+        everywhere=everywhere,
+        shrinks=shrinks,
+        regions=by_axis,
         seconds_mean=mean(seconds) if seconds else None,
         seconds_longest=max(seconds) if seconds else None,
         threads=max((r.threads for r in records), default=1),
@@ -261,15 +259,6 @@ def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores
         rows=tuple(_row(r) for r in records),
         drawn=len(records),
     )
-
-
-def _all(shares: Iterable[Share]) -> Share:
-    each = list(shares)
-    return Share(sum(share.hits for share in each), sum(share.count for share in each))
-
-
-def _count(hits: Sequence[bool]) -> Share:
-    return Share(sum(hits), len(hits))
 
 
 def _tally(words: Any) -> dict[str, int]:
@@ -355,7 +344,7 @@ def _coverage(records: Sequence[Record]) -> dict[str, Share]:
                 if key in effect.parameters:
                     inside = _inside(key, float(effect.parameters[key]), interval)
                     found.setdefault(effect.name, []).append(inside)
-    return {name: _count(hits) for name, hits in sorted(found.items())}
+    return {name: share_of(hits) for name, hits in sorted(found.items())}
 
 
 def _inside(key: str, truth: float, interval: Mapping[str, float | None]) -> bool:
@@ -373,39 +362,22 @@ def _shrink(record: Record) -> float | None:
     return None if not shrink or shrink.get("estimate") is None else float(shrink["estimate"])
 
 
-def _overlap(record: Record) -> float | None:
-    """Return what both share of the trials pointed out or affected, where a part of the trials is affected."""
-    affected = set(record.answer.affected_trials)
-    trials = set(record.answer.strength_by_trial)
-    if record.diagnosis is None or not affected or affected == trials or record.answer.strength_sigma < _CLEAR:
-        return None
-    pointed = {entry["value"] for entry in record.diagnosis["where"] if entry["axis"] == "trial"}
-    return len(affected & pointed) / len(affected | pointed)
+def _shrinks(records: Sequence[Record]) -> tuple[float | None, float | None, float | None]:
+    """Return medians: of the shrink by the sensor alone, of the shrink, and of the shrink of what the sensor leaves."""
+    gaps = [r.diagnosis["gap"] for r in records if r.diagnosis is not None and _shrink(r) is not None]
 
+    def middle(start: str, end: str) -> float | None:
+        # Nothing can be shrunk of what is no more than noise.
+        ratios = [
+            1.0 - (gap[end] - gap["noise_floor"]) / (gap[start] - gap["noise_floor"])
+            for gap in gaps
+            if gap[start] > gap["noise_floor"]
+        ]
+        return median(min(max(ratio, 0.0), 1.0) for ratio in ratios) if ratios else None
 
-def _regions(records: Sequence[Record]) -> dict[str, Share]:
-    found: dict[str, list[bool]] = {}
-    for record in records:
-        if record.diagnosis is None or record.answer.strength_sigma < _CLEAR:
-            continue
-        for axis, (low, high) in record.answer.where.items():
-            said = [
-                (entry["low"], entry["high"])
-                for entry in record.diagnosis["where"]
-                if entry["axis"] == axis and entry.get("low") is not None and entry.get("high") is not None
-            ]
-            # A region across the cycle's end goes on beyond 360 degrees.
-            turns = (-360.0, 0.0, 360.0) if axis == "cycle_phase_deg" else (0.0,)
-            true = [(low + turn, high + turn) for turn in turns]
-            found.setdefault(axis, []).append(any(_shared(one, region) >= 0.5 for one in true for region in said))
-    return {axis: _count(hits) for axis, hits in sorted(found.items())}
-
-
-def _shared(first: tuple[float, float], second: tuple[float, float]) -> float:
-    """Return intersection over union of two intervals: a region that covers everything points nowhere."""
-    both = min(first[1], second[1]) - max(first[0], second[0])
-    union = max(first[1], second[1]) - min(first[0], second[0])
-    return max(both, 0.0) / union if union > 0.0 else 1.0
+    stated = [s for r in records if (s := _shrink(r)) is not None]
+    alone, beyond = middle("before", "after_nuisance_only"), middle("after_nuisance_only", "after")
+    return alone, median(stated) if stated else None, beyond
 
 
 def _row(record: Record) -> dict[str, Any]:
