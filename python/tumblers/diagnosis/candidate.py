@@ -5,16 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields, replace
 from itertools import pairwise
+from math import cos, radians, sin
 from typing import Any
 
 import numpy as np
 
+from ..check import Vector
 from ..dataset import Dataset, LabTrial
 from ..field import RotatingField, StaticField, field_to_table
 from ..scenario import Scenario
 from .simulator import longest_step_s
 
-__all__ = ["Candidate", "candidates"]
+__all__ = ["Candidate", "candidates", "turned"]
 
 # Degrees by which a slope may exceed the steepest that was used.
 _STEEPER = (5.0, 10.0)
@@ -26,6 +28,9 @@ _FASTEST_HZ = 10.0
 # Cycles that a trial lasts at least, and its least time, s; but no longer than the longest that was made.
 _CYCLES, _LEAST_S = 2.0, 1.0
 _MOST_FREQUENCIES, _MOST_INCLINES, _MOST_STRENGTHS, _MOST_STATIC = 5, 10, 3, 8
+# Degrees by which a rotating field is turned about the normal; an axis is another one beyond so many (their cosine).
+_TURNS_DEG = (45.0, 90.0)
+_SAME_AXIS = cos(radians(10.0))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -41,8 +46,8 @@ class Candidate:
     duration_s
         Time, s.
     outside
-        In what it leaves the ranges of the trials so far: ``frequency``, ``field strength``, ``slope``, or
-        ``static field``.
+        In what it leaves the ranges of the trials so far: ``frequency``, ``field strength``, ``slope``,
+        ``static field``, or ``direction``.
     """
 
     field: RotatingField | StaticField
@@ -207,6 +212,37 @@ def candidates(dataset: Dataset, most: int) -> tuple[Candidate, ...]:
     kept = _some(inside, max(room // 2, room - (len(runs) - len(inside))))
     beyond = _some([run for run in runs if run.outside], max(room - len(kept), 0))
     return tuple([*kept, *beyond, *tilts][:most])
+
+
+def turned(dataset: Dataset, most: int) -> tuple[Candidate, ...]:
+    """Return runs of `candidates` with the field turned about the normal, thinned evenly to a greatest number.
+
+    They roll the robot obliquely and across: what acts along y and what acts along x part there.
+
+    Parameters
+    ----------
+    dataset
+        What the lab did.
+    most
+        So many at most.
+    """
+    used = [t.field.rotation_axis for t in dataset.trials if isinstance(t.field, RotatingField)]
+    found = []
+    for run in candidates(dataset, 2 * most):
+        for turn in _TURNS_DEG:
+            if run.outside or not isinstance(run.field, RotatingField):
+                continue
+            axis, start = (_about_the_normal(v, turn) for v in (run.field.rotation_axis, run.field.initial_direction))
+            if all(abs(float(np.dot(axis, other))) < _SAME_AXIS for other in used):
+                field = replace(run.field, rotation_axis=axis, initial_direction=start)
+                found.append(replace(run, field=field, outside=("direction",)))
+    return tuple(_some(found, most))
+
+
+def _about_the_normal(vector: Vector, turn_deg: float) -> Vector:
+    c, s, (x, y, z) = cos(radians(turn_deg)), sin(radians(turn_deg)), vector
+    # Without what rounding leaves of a right angle's cosine.
+    return round(c * x - s * y, 12) + 0.0, round(s * x + c * y, 12) + 0.0, z
 
 
 def _frequencies(fields: list[RotatingField]) -> list[float]:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..dataset import Dataset
 from ..effects.base import Effect
-from .candidate import Candidate, candidates
+from .candidate import Candidate, candidates, turned
 from .foretold import CLIMBS, RUNS, SLIDES, STAYS, Foretold, Said, foretell
 from .information import information
 from .quantity import enumerated
@@ -33,7 +33,7 @@ _WITHIN, _BEYOND = 2, 1
 _LEAST_BITS = 0.02
 # Two hypotheses of equal odds are told apart by a trial of so much information.
 _APART_BITS = 0.1
-_MOST_CANDIDATES = 40
+_MOST_CANDIDATES, _MOST_TURNED = 40, 16
 # Draws for a first look, for a closer one at some of each kind, and for the last.
 _FIRST_DRAWS, _CLOSER_DRAWS = 6, 12
 _CLOSER, _LAST = 3, 2
@@ -52,7 +52,8 @@ def next_trials(
 ) -> tuple[NextTrial, ...]:
     """Return the trials that would tell hypotheses apart, the best first.
 
-    Up to two, of different kinds, are within the lab's ranges; then comes one beyond them, if that tells more.
+    Up to two, of different kinds, are within the lab's ranges; then comes one beyond them, if that tells more. Where
+    none of them tells enough, one is looked for that rolls the robot in another direction.
 
     Parameters
     ----------
@@ -93,16 +94,20 @@ def next_trials(
                 out.append((information(foretold, weights, seed), option, foretold))
         return sorted(out, key=lambda entry: -entry[0])
 
-    options = candidates(dataset, _MOST_CANDIDATES)
-    # A few draws say which trials deserve a closer look; of each kind some, and more slopes near the best.
-    closer: dict[Candidate, None] = {}
-    for same in _by_kind(look(options, _FIRST_DRAWS)):
-        closer |= dict.fromkeys(same[:_CLOSER])
-        if same[0].incline_deg != 0.0 and not same[0].outside:
-            closer |= dict.fromkeys(same[0].steeper_and_flatter(options))
-    last = [option for same in _by_kind(look(list(closer), _CLOSER_DRAWS)) for option in same[:_LAST]]
+    def telling(options: Sequence[Candidate]) -> list[tuple[float, Candidate, Foretold]]:
+        # A few draws say which trials deserve a closer look; of each kind some, and more slopes near the best.
+        closer: dict[Candidate, None] = {}
+        for same in _by_kind(look(options, _FIRST_DRAWS)):
+            closer |= dict.fromkeys(same[:_CLOSER])
+            if same[0].incline_deg != 0.0 and not same[0].outside:
+                closer |= dict.fromkeys(same[0].steeper_and_flatter(options))
+        last = [option for same in _by_kind(look(list(closer), _CLOSER_DRAWS)) for option in same[:_LAST]]
+        return [entry for entry in look(last, None) if entry[0] >= _LEAST_BITS]
+
+    found = telling(candidates(dataset, _MOST_CANDIDATES))
+    if not found or found[0][0] < _APART_BITS:
+        found = sorted([*found, *telling(turned(dataset, _MOST_TURNED))], key=lambda entry: -entry[0])
     chosen: list[tuple[float, Candidate, Foretold]] = []
-    found = [entry for entry in look(last, None) if entry[0] >= _LEAST_BITS]
     for entry in found:
         kinds = [option.kind for _, option, _ in chosen]
         if not entry[1].outside and entry[1].kind not in kinds and len(chosen) < _WITHIN:

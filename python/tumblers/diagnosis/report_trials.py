@@ -15,7 +15,7 @@ from .plots.overlay import plot_overlay
 from .plots.svg import WIDTH_IN, svg_bytes
 from .quantity import plain, rounded, sigmas
 from .result import NextTrial
-from .words import observation_words, reason_words, set_words
+from .words import NO_TRIAL, observation_words, reason_words, set_words
 
 __all__ = ["floor_part", "next_part", "overlay_part"]
 
@@ -76,6 +76,8 @@ def next_part(diagnosis: Diagnosis) -> str:
         if effect.confounded_with
     ]
     proposed = "".join(_proposal(i + 1, trial) for i, trial in enumerate(diagnosis.next_trials))
+    if tied and not proposed:
+        proposed = text(f"{NO_TRIAL[:1].upper()}{NO_TRIAL[1:]}")
     return (listed(tied) or text("No effect of the catalogue is tied with the verdict.")) + proposed
 
 

@@ -18,9 +18,21 @@ from .phrase import meaning_of, phrase_of, title_of, unit_of
 from .quantity import handy_unit, percent, rounded, sigmas, with_interval, with_sigma
 from .result import EffectEstimate, Gap, NextTrial, Region
 
-__all__ = ["headline", "observation_words", "points", "reason_words", "region_words", "set_words", "summary"]
+__all__ = [
+    "NO_TRIAL",
+    "headline",
+    "observation_words",
+    "points",
+    "reason_words",
+    "region_words",
+    "set_words",
+    "summary",
+]
 
 Floats = NDArray[np.float64]
+
+# What is tied stays so.
+NO_TRIAL = "of the trials that were simulated, none tells them apart, in this direction or another."
 
 _WIDTH = 100
 _LABEL = 13
@@ -172,6 +184,8 @@ def points(diagnosis: Diagnosis, *, whole: bool = False) -> tuple[tuple[str, str
         ]
         # Beyond the ranges of the lab only where that is worth the trouble.
         said += [("or, beyond", f"what was done so far: {_next(other)}") for other in telling[:1]]
+    elif any(effect.confounded_with for effect in diagnosis.effects):
+        said.append(("next trial", NO_TRIAL))
     said += [("caution", text) for text in cautions(diagnosis)]
     return tuple(said)
 
