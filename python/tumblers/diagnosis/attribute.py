@@ -202,11 +202,12 @@ def _ranked(
 ) -> tuple[list[Contender], float]:
     alike = comparison.alike
     dispersion = alike * max(1.0, min(contender.cost for contender in contenders) / comparison.count)
-    listed = max(len(effects), 1)
+    # One effect alone on the list would be likelier than none before anything is seen, and lead without doing anything.
+    listed = max(len(effects), 2)
     prior = {
         0: log(PRIOR[0]),
         1: log(PRIOR[1] / listed),
-        2: log(PRIOR[2] / max(listed * (listed - 1) // 2, 1)) - SECOND,
+        2: log(PRIOR[2] / (listed * (listed - 1) // 2)) - SECOND,
     }
     place = {name: k for k, name in enumerate(effects)}
     scored = []

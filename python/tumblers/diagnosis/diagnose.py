@@ -167,7 +167,9 @@ class _Conclusion:
         tied = ties(comparison, attribution, chosen)
 
         estimates, shown = self._estimates(chosen, tied), overlays(self.fitter, nominal, self.held_out(chosen), chosen)
-        ranking = tuple(self._ranked(contender) for contender in attribution.contenders)
+        # What counts as the nominal model has its evidence but no probability of its own.
+        by_probability = sorted(attribution.contenders, key=lambda contender: contender.probability == 0.0)
+        ranking = tuple(self._ranked(contender) for contender in by_probability)
         floors, proposed = self._floors(chosen), self._next(chosen, tied, tell)
         tell("where the gap lies", 0, 2)
         regions, maps = self._where(chosen)
@@ -344,8 +346,10 @@ def _assumptions(comparison: Comparison, attribution: Attribution) -> tuple[str,
         "effects are fitted to the others.",
         f"{_weight(attribution.dispersion)} in probabilities and intervals.",
         f"Tried were {', '.join(tried)}." if tried else "No effect that was tried can be at work in these trials.",
-        f"However strong the evidence, {100.0 * LAPSE:.0f} % of the probability belongs to all hypotheses alike.",
-        f"Before anything is fitted, {100.0 * PRIOR[0]:g} % for no gap, {100.0 * PRIOR[1]:g} % for one effect, "
+        f"However strong the evidence, {100.0 * LAPSE:.0f} % of the probability belongs to all hypotheses alike; what "
+        "only says that nominal numbers are off within their tolerances gives its own to the nominal model.",
+        f"Before anything is fitted, {100.0 * PRIOR[0]:g} % for no gap, {100.0 * PRIOR[1]:g} % for one effect (half of "
+        "it where one alone is tried), "
         f"{100.0 * PRIOR[2]:g} % for two; no more than two are tried. A nominal model that fails the predictive test "
         f"counts {REFUSED:g} of that where something is likelier by as much.",
         f"A second effect must add a factor e^{SECOND:g} of evidence: one in another form than ours looks like two.",

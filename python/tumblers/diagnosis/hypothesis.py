@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..effects.base import Effect
 from ..effects.parameter import Nuisance
+from ..errors import InputError
 from ..scenario import Scenario
 
 __all__ = ["PRIOR_SIGMA", "SECOND", "Hypothesis"]
@@ -57,8 +59,11 @@ class Hypothesis:
     ranges: Floats
 
     @classmethod
-    def of(cls, kind: type[Effect], scenarios: Iterable[Scenario]) -> Hypothesis:
-        """Return the hypothesis of one effect, over what is plausible in any of the scenarios."""
+    def of(cls, kind: type[Effect], scenarios: Sequence[Scenario]) -> Hypothesis:
+        """Return the hypothesis of one effect, over what is plausible in any of the scenarios.
+
+        What changes none of them, as a factor of a friction that is zero, has no starts.
+        """
         neutral = np.array(kind.to_fit([p.neutral for p in kind.parameters]))
         low, high = neutral.copy(), neutral.copy()
         widest = np.array([(p.neutral, p.neutral) for p in kind.parameters])
@@ -71,6 +76,8 @@ class Hypothesis:
             widest = np.column_stack([np.minimum(widest[:, 0], own[:, 0]), np.maximum(widest[:, 1], own[:, 1])])
             points |= dict.fromkeys(kind.to_fit(start) for start in kind.starts(scenario))
             close |= dict.fromkeys(kind.to_fit(start) for start in kind.close_starts(scenario))
+        if not any(_changes(kind, scenario) for scenario in scenarios):
+            points, close = {}, {}
         scale = np.maximum(np.maximum(high - neutral, neutral - low), 1e-300)
         starts, closer = (
             np.array([(np.array(point) - neutral) / scale for point in those]).reshape(-1, len(neutral))
@@ -146,3 +153,13 @@ class Hypothesis:
             values += kind.from_fit(coordinates[len(values) : len(values) + len(kind.parameters)])
         # Rounding may carry the end of a range beyond what is possible.
         return np.clip(values, self.ranges[:, 0], self.ranges[:, 1])
+
+
+def _changes(kind: type[Effect], scenario: Scenario) -> bool:
+    """Return whether an effect changes a scenario from any of its starts."""
+    for start in kind.starts(scenario):
+        # What cannot be added from here may be from another start.
+        with suppress(InputError):
+            if kind.from_vector(start).edit(scenario) != scenario:
+                return True
+    return False

@@ -80,7 +80,7 @@ class RankedHypothesis:
     probability
         Over all hypotheses that were fitted.
     log_evidence
-        Laplace's, less that of the nominal model.
+        ln of Laplace's evidence times the prior probability, less that of the nominal model.
     gap
         Root mean square difference over all trials after the fit, noise sigmas.
     held_out_gap, shrink
