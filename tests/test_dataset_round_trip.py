@@ -12,12 +12,15 @@ from hypothesis import strategies as st
 
 from tumblers import Cuboid, Model, Robot, RotatingField, StaticField, Substrate, TableField, dataset
 from tumblers.dataset import CHANNELS, Dataset, LabTrial, Outcome, Sensor, Track
+from tumblers.dataset.track import POSITIONS
 
 ROBOT = Robot(shape=Cuboid(length_m=8e-4, width_m=4e-4, height_m=1e-4), mass_kg=3.78e-8, magnetization_A_per_m=15000.0)
 DURATION = 1.0
 POSITIVE = st.floats(1e-9, 1e3)
 LEAST = st.floats(0, 0.5)
 VALUE = st.floats(-1e3, 1e3)
+PLACE = st.floats(-10, 10)
+NOISE = st.floats(1e-9, 1.0)
 PIXEL = st.tuples(VALUE, VALUE)
 NAME = st.text(min_size=1, max_size=12).filter(lambda text: text.isprintable() and text.strip())
 MAYBE = st.none()
@@ -29,7 +32,8 @@ def tracks(draw: st.DrawFn) -> Track:
     names = draw(st.sets(st.sampled_from([name for name in CHANNELS if not name.startswith("q")])))
 
     def column(name: str) -> np.ndarray:  # type: ignore[type-arg]
-        cell = (st.floats(-90, 90) if name == "tilt_deg" else VALUE) | st.just(float("nan"))
+        known = st.floats(-90, 90) if name == "tilt_deg" else PLACE if name in POSITIONS else VALUE
+        cell = known | st.just(float("nan"))
         return np.array(draw(st.lists(cell, min_size=len(time), max_size=len(time))))
 
     channels = {name: column(name) for name in sorted(names)}
@@ -83,9 +87,9 @@ def lab_trials(draw: st.DrawFn) -> LabTrial:
 
 SENSOR = st.builds(
     Sensor,
-    position_noise_m=POSITIVE,
-    angle_noise_deg=POSITIVE,
-    z_noise_m=MAYBE | POSITIVE,
+    position_noise_m=NOISE,
+    angle_noise_deg=NOISE,
+    z_noise_m=MAYBE | NOISE,
     micrometres_per_pixel=MAYBE | POSITIVE,
     frames_per_second=MAYBE | POSITIVE,
     origin_px=MAYBE | PIXEL,

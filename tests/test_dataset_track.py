@@ -94,6 +94,9 @@ def test_without_the_start_the_origin_has_to_be_stated(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"^sensor\.origin_px: found no such key, expected .* at 0\.02 s, when it has"):
         read(tmp_path, one.replace("11", "13"))
     assert read(tmp_path, one.replace("11", "13"), origin_tolerance_m=1e-4).channels["x_m"][2] == pytest.approx(6e-5)
+    # As of a movie that began before the field, or counts on from the last trial's.
+    with pytest.raises(InputError, match=r"the first in t\.csv is at 2 s, .* since the field's start, time 0"):
+        read(tmp_path, "frame,x,y\n100,7,7\n101,7,7\n")
     # A robot that is never seen has left no start.
     assert np.isnan(read(tmp_path, "frame,x,y\n0,,\n1,,\n").channels["x_m"]).all()
 
@@ -140,6 +143,7 @@ REFUSED = [
     ("time_s,x_m\n0,1_0e-6\n", "t.csv line 2: x_m '1_0e-6', expected a finite number"),
     ("time_s,x_m\n0,１\n", "t.csv line 2: x_m '１', expected a finite number"),
     ("time_s,tilt_deg\n0,90.5\n0.1,-95\n0.2,181\n", "t.csv line 4: tilt_deg 181 degrees, expected the angle above"),
+    ("time_s,x_m,y_m\n0,0,0\n1,3,410\n", "t.csv line 3: y_m 410 m, expected metres, at most 10 from the start"),
     ("time_s,qw,qx,qy,qz\n0,1,,0,0\n", "t.csv line 2: qx nothing beside the others, expected a whole quaternion"),
     ("time_s,qw,qx,qy,qz\n0,1,0,0,0\n1,1,1,0,0\n", "t.csv line 3: qw a quaternion of length 1.414, expected length 1"),
     ('time_s,x_m\n0,"1\n', "t.csv: unexpected end of data, expected a CSV file"),

@@ -15,7 +15,7 @@ __all__ = ["to_substrate"]
 _PUNCTUAL, _LATE = 0.51, 1.01
 
 
-def to_substrate(x_px: Array, y_px: Array, time_s: Array, sensor: Sensor) -> tuple[Array, Array]:
+def to_substrate(x_px: Array, y_px: Array, time_s: Array, sensor: Sensor, name: str) -> tuple[Array, Array]:
     """Return x and y on the substrate, m, of a path in the image.
 
     Parameters
@@ -26,6 +26,8 @@ def to_substrate(x_px: Array, y_px: Array, time_s: Array, sensor: Sensor) -> tup
         Times of the frames, s, shape (n,).
     sensor
         Scale, origin and axes.
+    name
+        Of the track's file, for errors.
 
     Raises
     ------
@@ -33,7 +35,7 @@ def to_substrate(x_px: Array, y_px: Array, time_s: Array, sensor: Sensor) -> tup
         A sensor without a scale; or without an origin, where the robot was not seen at the start.
     """
     if sensor.micrometres_per_pixel is None:
-        raise InputError("sensor.micrometres_per_pixel", "no such key", "the scale of the tracks that are in pixels")
+        raise InputError("sensor.micrometres_per_pixel", "no such key", f"the scale of the pixels in {name}")
     seen = np.flatnonzero(np.isfinite(x_px))
     if sensor.origin_px is not None:
         right, down = sensor.origin_px
@@ -45,7 +47,8 @@ def to_substrate(x_px: Array, y_px: Array, time_s: Array, sensor: Sensor) -> tup
         if interval >= 0.0 and (late > _LATE * interval or left):
             way = f" some {1e6 * moved:.0f} µm" if moved > 0.0 else ""
             expected = (
-                f"the pixel of the robot's start: the first that is seen is at {late:g} s, when it has moved{way}"
+                f"the pixel of the robot's start: the first in {name} is at {late:g} s, when it has moved{way} "
+                "since the field's start, time 0"
             )
             raise InputError("sensor.origin_px", "no such key", expected)
         right, down = float(x_px[seen[0]]), float(y_px[seen[0]])

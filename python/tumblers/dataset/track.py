@@ -20,6 +20,8 @@ QUATERNION = ("qw", "qx", "qy", "qz")
 ANGLES = (*QUATERNION, "tilt_deg", "heading_deg")
 CHANNELS = (*POSITIONS, *ANGLES)
 
+# Metres from the start within which a microrobot is seen: what is farther was written in another unit.
+_FARTHEST_M = 10.0
 # A quaternion that was measured or rounded is still meant to have length one.
 _QUATERNION_UNIT = 0.05
 # An angle above the substrate that noise may still have made; what turns on and on is another angle.
@@ -52,8 +54,8 @@ class Track:
     Raises
     ------
     InputError
-        No channel or an unknown one, arrays of other shapes, times that do not increase, an infinite value, or
-        quaternions that are incomplete or far from length one.
+        No channel or an unknown one, arrays of other shapes, times that do not increase, a value that is infinite or
+        farther than a microrobot goes, or quaternions that are incomplete or far from length one.
     """
 
     time_s: Array
@@ -115,6 +117,11 @@ def find_fault(time_s: Array, channels: Mapping[str, Array]) -> Fault | None:
     for name, values in channels.items():
         for row in np.flatnonzero(np.isinf(values)):
             return Fault(int(row), name, show(float(values[row])), "a finite number, or none for a lost frame")
+    for name in POSITIONS:
+        for row in np.flatnonzero(np.abs(channels.get(name, np.empty(0))) > _FARTHEST_M):
+            return Fault(
+                int(row), name, f"{channels[name][row]:g} m", f"metres, at most {_FARTHEST_M:g} from the start"
+            )
     for row in np.flatnonzero(np.abs(channels.get("tilt_deg", np.empty(0))) > _STEEPEST_DEG):
         found = f"{channels['tilt_deg'][row]:g} degrees"
         return Fault(int(row), "tilt_deg", found, "the angle above the substrate, from -90 to 90 but for noise")

@@ -90,7 +90,7 @@ def read_track_csv(key: str, path: Path, name: str, sensor: Sensor) -> Track:
         for row in np.flatnonzero(np.isnan(x) != np.isnan(y)):
             missing = pixels[0] if np.isnan(x[row]) else pixels[1]
             raise table.refuse(int(row), missing, "nothing beside the other", "both pixels or none")
-        channels["x_m"], channels["y_m"] = to_substrate(x, y, time, sensor)
+        channels["x_m"], channels["y_m"] = to_substrate(x, y, time, sensor, name)
     fault = find_fault(time, channels)
     if fault is not None:
         column = clock if fault.column == "time_s" else fault.column
