@@ -36,6 +36,8 @@ REFUSED = [
     ("angle_noise_deg = 1.0", "angle_noise_deg = true", "sensor.angle_noise_deg", "True"),
     ("[sensor]", "[sensor]\nnoise = 1", "sensor.noise", "unknown key"),
     ("[sensor]", "[sensor]\nz_noise_m = 0", "sensor.z_noise_m", "greater than 0"),
+    ("[sensor]", "[sensor]\nz_noise_m = 1e-200", "sensor.z_noise_m", "at least 1e-12"),
+    ("position_noise_m = 3.0e-6", "position_noise_m = 1e200", "sensor.position_noise_m", "at most 1"),
     ("[sensor]", "[sensor]\nmicrometres_per_pixel = -2", "sensor.micrometres_per_pixel", "greater than 0"),
     ("[sensor]", "[sensor]\nframes_per_second = 0", "sensor.frames_per_second", "greater than 0"),
     ("[sensor]", "[sensor]\norigin_px = [1, 2, 3]", "sensor.origin_px", "a list of 2 numbers"),

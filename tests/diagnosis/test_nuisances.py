@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from tumblers.dataset import Track
 from tumblers.diagnosis import diagnose
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.floor import SHARED
@@ -17,7 +18,7 @@ from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects import get
 from tumblers.model import Model
 
-from .lab import UPWARDS, measure, plan, without
+from .lab import PLANS, UPWARDS, measure, plan, without
 
 CONSIDERED = ("camera_calibration", "size_error", "substrate_tilt", "field_rolloff")
 
@@ -181,3 +182,19 @@ def test_nominal_numbers_that_are_held_hide_no_gap() -> None:
     same = comparison.held(paths, fitted)
     for before, after in zip(fitted.trials, same.trials, strict=True):
         assert np.array_equal(before, after)
+
+
+@pytest.mark.parametrize(
+    ("stated", "half_a_frame"), [({}, 0.05), ({"frames_per_second": 60.0}, 1 / 120), ({"time_offset_s": 0.003}, 0.003)]
+)
+def test_a_track_that_leaves_frames_out_has_a_clock_as_good_as_the_camera_s(
+    stated: dict[str, float], half_a_frame: float
+) -> None:
+    # Every sixth frame of 60 in a second.
+    data = measure(plan(PLANS[:1]))
+    track = data.trials[0].track
+    assert track is not None
+    sparse = Track(time_s=track.time_s[::6], channels={name: values[::6] for name, values in track.channels.items()})
+    data = replace(data, sensor=replace(data.sensor, **stated), trials=(replace(data.trials[0], track=sparse),))
+    comparison = Comparison(data, Simulator(data, 1))
+    assert comparison.nuisances.local_bounds[0, 0] == pytest.approx(half_a_frame, rel=1e-9)

@@ -19,6 +19,9 @@ TYPICAL_POSITION_NOISE_M = 5.0e-6
 TYPICAL_ANGLE_NOISE_DEG = 1.0
 
 _UNIT = 1e-12
+# More noise than this tells nothing, and less no camera has, m and degrees.
+_MOST_NOISE = {"position_noise_m": 1.0, "angle_noise_deg": 360.0, "z_noise_m": 1.0}
+_LEAST_NOISE = 1e-12
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -38,7 +41,7 @@ class Sensor:
     y_axis_px
         Direction of the substrate's +y in the image, whose x points right and y down; normalised.
     time_offset_s
-        How far the track's clock may be off, s; half a frame if None.
+        How far the track's clock may be off, s; half a frame if None, by `frames_per_second` or the track's own times.
     origin_tolerance_m, heading_tolerance_deg, scale_tolerance
         How far the track's origin (m), heading (degrees) and scale (a fraction) may be off.
     tracked_point
@@ -67,8 +70,12 @@ class Sensor:
         def put(name: str, value: object) -> None:
             object.__setattr__(self, name, value)
 
-        for name in ("position_noise_m", "angle_noise_deg", "z_noise_m", "micrometres_per_pixel", "frames_per_second"):
-            if getattr(self, name) is not None or name in ("position_noise_m", "angle_noise_deg"):
+        for name, most in _MOST_NOISE.items():
+            if getattr(self, name) is not None or name != "z_noise_m":
+                put(name, number(f"sensor.{name}", getattr(self, name), above=0.0, most=most))
+                number(f"sensor.{name}", getattr(self, name), least=_LEAST_NOISE)
+        for name in ("micrometres_per_pixel", "frames_per_second"):
+            if getattr(self, name) is not None:
                 put(name, number(f"sensor.{name}", getattr(self, name), above=0.0))
         if self.time_offset_s is not None:
             put("time_offset_s", number("sensor.time_offset_s", self.time_offset_s, least=0.0))
@@ -86,6 +93,18 @@ class Sensor:
         """Direction of the substrate's +x in the image: to the right of +y as seen from above, x = y × z."""
         right, down = self.y_axis_px
         return -down, right
+
+    def clock_tolerance_s(self, interval_s: float) -> float:
+        """Return how far the clock of a track may be off, s.
+
+        Parameters
+        ----------
+        interval_s
+            Between two of its rows, s, which may leave frames out: it counts where the camera's rate is not stated.
+        """
+        if self.time_offset_s is not None:
+            return self.time_offset_s
+        return 0.5 * (interval_s if self.frames_per_second is None else 1.0 / self.frames_per_second)
 
 
 def _direction(key: str, value: object) -> Pixel:

@@ -96,7 +96,7 @@ class NuisanceFit:
         self.tracked = np.array([len(reader.observed.time_s) > 0 for reader in readers], dtype=np.bool_)
         self.local_bounds = np.empty((len(readers), 3))
         for i, reader in enumerate(readers):
-            clock = 0.5 * reader.observed.frame_interval_s if sensor.time_offset_s is None else sensor.time_offset_s
+            clock = sensor.clock_tolerance_s(reader.observed.frame_interval_s)
             self.local_bounds[i] = clock, sensor.origin_tolerance_m, sensor.origin_tolerance_m
         sigmas = self.local_bounds * np.array([_CLOCK_SIGMA, _ORIGIN_SIGMA, _ORIGIN_SIGMA])
         self.local_sigmas = np.maximum(sigmas, 1e-12)

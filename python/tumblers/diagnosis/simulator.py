@@ -123,7 +123,7 @@ class Simulator:
             lab = self.dataset.trials[trial]
             scenario = lab.scenario(self.dataset, key[1], model=self.model)
             interval = lab.track.frame_interval_s if lab.track is not None and lab.track.time_s.size > 1 else 0.0
-            late = max(interval, self.dataset.sensor.time_offset_s or 0.0)
+            late = max(interval, self.dataset.sensor.clock_tolerance_s(interval))
             self._nominal[key] = _longer(scenario, late + _LONGEST_INTERVAL_S)
         return self._nominal[key]
 
