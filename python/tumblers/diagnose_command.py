@@ -40,10 +40,10 @@ def diagnose(
       tumblers diagnose examples/aluminium_30deg --out diagnosis
       tumblers diagnose lab/spring --effects friction_coefficient,stray_field_gradient,coil_yaw.py --out diagnosis
     """  # noqa: D301 - \b keeps the lines of an example apart
-    from .diagnosis.diagnosis import FILES
+    from .diagnosis.diagnosis import FILES, is_ours
 
     output_folder("--out", out, FILES)
-    strange = [name for name in FILES if (out / name).exists()] if not (out / FILES[0]).exists() else []
+    strange = [] if is_ours(out) else [name for name in FILES if (out / name).exists()]
     if strange:
         raise InputError("--out", f"'{out / strange[0]}', of no diagnosis", "a folder of its own")
     if jobs is not None:

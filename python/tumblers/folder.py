@@ -30,8 +30,11 @@ def output_folder(option: str, folder: Path, names: Iterable[str]) -> None:
     """
     if folder.exists() and not folder.is_dir():
         raise InputError(option, f"the file '{folder}'", "a folder")
+    if folder.is_symlink() and not folder.exists():
+        raise InputError(option, f"the link '{folder}' to nothing", "a folder")
     if not folder.exists() and not folder.parent.is_dir():
-        raise InputError(option, f"'{folder}'", f"a folder in one that exists, '{folder.parent}' does not")
+        what = "is a file" if folder.parent.exists() else "does not"
+        raise InputError(option, f"'{folder}'", f"a folder in one that exists, '{folder.parent}' {what}")
     written = folder if folder.exists() else folder.parent
     if not os.access(written, os.W_OK | os.X_OK):
         raise InputError(option, f"'{folder}'", f"a folder that can be written to, '{written}' cannot")

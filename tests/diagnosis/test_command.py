@@ -51,6 +51,9 @@ def tumble(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
             "--effects: found 'wind', expected one of m",
         ),
         (["data", "--out", "strange"], "--out: found 'strange/scenario.toml', of no diagnosis"),
+        (["data", "--out", "foreign"], "--out: found 'foreign/diagnosis.json', of no diagnosis"),
+        (["data", "--out", "dangling"], "--out: found the link 'dangling' to nothing"),
+        (["data", "--out", "file/out"], "'file' is a file"),
         (["data", "--out", "out", "--effects", ""], "--effects: found ''"),
         (["data", "--out", "out", "--effects", "draft_angle", "--effects", "wind"], "--effects: found 'wind'"),
         (["data", "--out", "out", "--effects", "gone.py"], "gone.py: found no such file"),
@@ -64,6 +67,9 @@ def test_bad_input_gets_one_line_and_writes_nothing(tmp_path: Path, arguments: l
     (tmp_path / "file").write_text("")
     (tmp_path / "strange").mkdir()
     (tmp_path / "strange" / "scenario.toml").write_text("")
+    (tmp_path / "foreign").mkdir()
+    (tmp_path / "foreign" / "diagnosis.json").write_text('{"patient": "7"}')
+    (tmp_path / "dangling").symlink_to("gone")
     (tmp_path / "bad.py").write_text("x = 1\n")
     before = sorted(tmp_path.rglob("*"))
     done = tumble("diagnose", *arguments, cwd=tmp_path)

@@ -36,7 +36,7 @@ from .result import (
 if TYPE_CHECKING:
     from .plots import Figures
 
-__all__ = ["FILES", "FORMAT", "Diagnosis"]
+__all__ = ["FILES", "FORMAT", "Diagnosis", "is_ours"]
 
 FORMAT = "tumblers-diagnosis/1"
 # What `Diagnosis.save` writes.
@@ -281,3 +281,18 @@ def _plain(value: Any) -> Any:
     if isinstance(value, np.floating | float):
         return float(value) if np.isfinite(value) else None
     return value
+
+
+def is_ours(folder: Path) -> bool:
+    """Return whether a folder has a diagnosis that was written here.
+
+    Parameters
+    ----------
+    folder
+        Any, which need not exist.
+    """
+    try:
+        table = json.loads((folder / FILES[0]).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return False
+    return isinstance(table, dict) and table.get("format") == FORMAT
