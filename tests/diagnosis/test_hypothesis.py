@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -10,9 +12,12 @@ from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects.base import Effect
 from tumblers.effects.catalogue import CATALOGUE
+from tumblers.effects.field_rolloff import FieldRolloff
+from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.effects.magnetization_misalignment import MagnetizationMisalignment
+from tumblers.effects.size_error import SizeError
 
-from .lab import plan
+from .lab import UPWARDS, plan
 
 
 @pytest.mark.parametrize("name", CATALOGUE)
@@ -42,3 +47,16 @@ def test_a_misalignment_is_smooth_around_neutral_and_has_no_end_at_half_a_turn()
 
 def _both(hypothesis: Hypothesis) -> list[Effect]:
     return [hypothesis.effects(point)[0] for point in ([-0.2, 1e-6], [-0.2, -1e-6])]
+
+
+def test_what_changes_no_trial_has_no_start() -> None:
+    slippery = replace(plan(), substrate=replace(plan().substrate, friction_coefficient=0.0))
+    still = plan((("still", UPWARDS, 0.0),))
+    for dataset, idle in ((slippery, FrictionCoefficient), (still, FieldRolloff)):
+        scenarios = [Simulator(dataset).nominal(i) for i in range(len(dataset.trials))]
+        assert not len(Hypothesis.of(idle, scenarios).starts)
+        assert len(Hypothesis.of(SizeError, scenarios).starts)
+    # One trial that it changes is enough.
+    simulator = Simulator(plan())
+    both = [simulator.nominal(4), simulator.nominal(0)]
+    assert len(Hypothesis.of(FieldRolloff, both).starts) == len(FieldRolloff.starts(both[1]))

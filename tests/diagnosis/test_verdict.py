@@ -202,3 +202,13 @@ def test_a_nominal_model_that_fails_its_test_counts_for_less_where_another_is_li
     before, after = (evidence([nominal, nothing], passed) for passed in (True, False))
     assert after == before
     assert after[()] > after["draft_angle",]
+
+
+def test_one_effect_alone_does_not_lead_by_doing_nothing() -> None:
+    data = measure(plan(PLANS[:2]), seed=1)
+    fitter = Fitter(Comparison(data, Simulator(data, 1)))
+    fitter.take_likeliest_noise(())
+    idle = Hypothesis.of(get("draft_angle"), [fitter.comparison.simulator.nominal(i) for i in fitter.trials])
+    nothing = of_fit(fitter, fitter.fit(idle, np.zeros(1), evaluations=1))
+    ranked, _ = _ranked([nothing, of_nominal(fitter)], fitter.comparison, ["draft_angle"], nominal_is_right=True)
+    assert [contender.names for contender in ranked] == [(), ("draft_angle",)]
