@@ -9,7 +9,7 @@ import pytest
 
 from tumblers.dataset import Dataset, LabTrial, Outcome, load
 from tumblers.diagnosis.attribute import attribute
-from tumblers.diagnosis.candidate import Candidate, candidates
+from tumblers.diagnosis.candidate import Candidate, candidates, turned
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.fit import Fitter
 from tumblers.diagnosis.foretold import CLIMBS, RUNS, SLIDES, STAYS, Said, foretell
@@ -247,3 +247,35 @@ def test_all_hypotheses_are_foretold_in_one_step(dataset: Dataset) -> None:
     assert all(step <= finest < LONGEST_STEP_S for step in both.step_s)
     steps = [both.scenario(Job(0, mine[-1])).run.fixed_step_s for _, mine in (rigid, soft)]
     assert steps[0] == steps[1]
+
+
+def test_what_no_trial_along_y_tells_apart_is_told_apart_across(dataset: Dataset) -> None:
+    # Less friction everywhere, and less along y alone: a robot that rolls along y on slopes along y meets the same.
+    run = replace(dataset.trials[0], incline_deg=0.0)
+    data = replace(dataset, trials=(run, replace(run, id="faster", field=replace(DRIVE, frequency_Hz=3.0))))
+    along_y = tuple(option for option in candidates(data, 40) if isinstance(option.field, RotatingField))
+    factors = (0.28, 0.3, 0.32)
+    less = tuple((get(FRICTION).from_vector([factor]),) for factor in factors)
+    less_along_y = tuple((get("friction_anisotropy").from_vector([1.0, factor]),) for factor in factors)
+    hypotheses = [((FRICTION,), less), (("friction_anisotropy",), less_along_y)]
+    simulator = in_one_step(data, hypotheses, 2)
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr("tumblers.diagnosis.next_trial.candidates", lambda *_: along_y)
+        (only,) = next_trials(data, simulator, hypotheses, seed=1)
+        assert not only.within_ranges
+        assert only.why.startswith(f"separates {FRICTION} from friction_anisotropy (")
+        assert "beyond what was done so far in direction" in only.why
+        assert abs(only.trial["field"]["rotation_axis"][1]) > 0.5
+        patched.setattr("tumblers.diagnosis.next_trial.turned", lambda *_: ())
+        assert next_trials(data, simulator, hypotheses, seed=1) == ()
+
+
+def test_a_direction_that_the_lab_has_is_not_turned_to_again(dataset: Dataset) -> None:
+    def axes(known: Dataset) -> list[tuple[float, ...]]:
+        fields = [option.field for option in turned(known, 16) if isinstance(option.field, RotatingField)]
+        return sorted({tuple(round(entry, 3) for entry in field.rotation_axis) for field in fields})
+
+    assert axes(dataset) == [(-0.707, -0.707, 0.0), (0.0, -1.0, 0.0)]
+    across = replace(DRIVE, rotation_axis=(0.0, 1.0, 0.0), initial_direction=(1.0, 0.0, 0.0))
+    known = replace(dataset, trials=(dataset.trials[0], replace(dataset.trials[0], id="across", field=across)))
+    assert axes(known) == [(-0.707, -0.707, 0.0), (-0.707, 0.707, 0.0)]
