@@ -290,7 +290,9 @@ def run() -> int:
     except TumblersError as error:
         return _failed(str(error), 2)
     except MemoryError:
-        return _failed("not enough memory; set output_every_s in [run] to keep fewer rows", 1)
+        return _failed(
+            "not enough memory; fewer rows take less: a longer output_every_s in [run], fewer frames in a dataset", 1
+        )
     except typer.Abort:
         raise KeyboardInterrupt from None
     return status if isinstance(status, int) else 0

@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tumblers.diagnosis.condition import condition_of_table
 from tumblers.diagnosis.phrase import phrase_of, title_of
 from tumblers.diagnosis.quantity import percent, rounded, with_interval
 from tumblers.diagnosis.result import EffectEstimate, Interval, RankedHypothesis, Region
-from tumblers.diagnosis.words import headline, points, summary
+from tumblers.diagnosis.words import NO_TRIAL, headline, points, summary
 from tumblers.effects.catalogue import CATALOGUE
 
 from .example import FREQUENCIES, NAN, lab, made, no_gap, outcomes_only
@@ -180,3 +181,37 @@ def test_shares_do_not_claim_certainty() -> None:
 def test_a_gap_in_most_trials_is_counted_rather_than_listed() -> None:
     regions = tuple(Region("trial", 0.9 / (i + 2), value=f"f{f:02.0f}", sigmas=9.0) for i, f in enumerate(FREQUENCIES))
     assert dict(points(made(where=regions)))["where"] == "7 of 9 trials are off, f01 holds most (45 %)."
+
+
+def test_of_what_refitting_the_camera_closes_no_effect_takes_the_credit() -> None:
+    gap = replace(made().gap, before=5.0, after_nuisance_only=2.0, after=1.1)
+    assert headline(made(gap=gap)).endswith(
+        "explains 90 % of what the sensor's own slips leave of the gap on trials not fitted, 2.0 σ that become 1.1 σ."
+    )
+    assert "explains 93 % of the gap on trials not fitted" in headline(made())
+
+
+def test_a_shrink_of_next_to_nothing_has_no_interval() -> None:
+    gap = replace(made().gap, shrink=Interval(0.008, 0.006, 0.011))
+    assert dict(points(made(gap=gap)))["how far"].endswith("the gap shrinks by less than 1 %.")
+
+
+def test_a_tie_that_no_trial_undoes_says_so() -> None:
+    assert dict(points(made(next_trials=())))["next trial"] == NO_TRIAL
+    free = replace(made().effects[0], confounded_with=())
+    assert "next trial" not in dict(points(made(next_trials=(), effects=(free,))))
+
+
+@pytest.mark.parametrize(
+    ("axis", "words"),
+    [
+        ((-1.0, 0.0, 0.0), "20 mT at 2 Hz, level"),
+        ((1.0, 0.0, 0.0), "20 mT at 2 Hz backwards, level"),
+        ((0.0, -1.0, 0.0), "20 mT at 2 Hz towards -x, level"),
+        ((-(0.5**0.5), 0.5**0.5, 0.0), "20 mT at 2 Hz 45° from +y towards +x, level"),
+        ((0.0, 0.0, 1.0), "20 mT at 2 Hz, level"),
+    ],
+)
+def test_a_direction_is_told_where_it_is_not_the_usual_one(axis: tuple[float, float, float], words: str) -> None:
+    field = {"kind": "rotating", "strength_T": 0.02, "frequency_Hz": 2.0, "rotation_axis": axis}
+    assert condition_of_table({"field": field, "incline_deg": 0.0}) == words

@@ -93,6 +93,9 @@ _FORETOLD = 0.05
 _CLOSED = 1.2
 # Where less than this share of the gap is left once the sensor's nuisances are fitted, that is what effects are about.
 _SLIPS = 0.1
+# And where it is less than this, that they are about that alone is said.
+_MOSTLY = 0.9
+_A_PERCENT = 0.015
 
 
 def summary(diagnosis: Diagnosis) -> str:
@@ -241,6 +244,13 @@ def _explained(gap: Gap) -> str:
             f"what the sensor's own slips leave of the gap on trials not fitted, {_sigmas(gap.after_nuisance_only)} "
             f"that become {_sigmas(gap.after)}"
         )
+    left = (gap.after_nuisance_only - gap.noise_floor) / (gap.before - gap.noise_floor)
+    if left < _MOSTLY:
+        own = 1.0 - max(gap.after - gap.noise_floor, 0.0) / (gap.after_nuisance_only - gap.noise_floor)
+        return (
+            f"{percent(max(own, 0.0))} of what the sensor's own slips leave of the gap on trials not fitted, "
+            f"{_sigmas(gap.after_nuisance_only)} that become {_sigmas(gap.after)}"
+        )
     return f"{percent(gap.shrink.estimate)} of the gap on trials not fitted"
 
 
@@ -341,7 +351,8 @@ def _how_far(diagnosis: Diagnosis) -> str:
         held_out = "in the fit itself, for no trial could be left out: "
     if count and isfinite(shrink.estimate):
         share = f"; the gap shrinks by {percent(shrink.estimate)}"
-        if isfinite(shrink.low) and isfinite(shrink.high):
+        # An interval of what is next to nothing would only repeat it.
+        if isfinite(shrink.low) and isfinite(shrink.high) and shrink.high >= _A_PERCENT:
             share += f" (90 % interval {100.0 * shrink.low:.0f} to {percent(shrink.high)})"
     else:
         share = ""
