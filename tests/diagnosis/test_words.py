@@ -189,6 +189,9 @@ def test_of_what_refitting_the_camera_closes_no_effect_takes_the_credit() -> Non
         "explains 90 % of what the sensor's own slips leave of the gap on trials not fitted, 2.0 σ that become 1.1 σ."
     )
     assert "explains 93 % of the gap on trials not fitted" in headline(made())
+    # The shrink of 0.3 is the camera's.
+    idle = replace(gap, after=2.0, shrink=Interval(0.3, 0.1, 0.9))
+    assert "too few for the others to foretell it" in headline(made(gap=idle))
 
 
 def test_a_shrink_of_next_to_nothing_has_no_interval() -> None:

@@ -131,7 +131,7 @@ def headline(diagnosis: Diagnosis) -> str:
         amounts = " and ".join(phrase.amount.rstrip(",") if len(phrases) > 1 else phrase.amount for phrase in phrases)
         together = ", together," if len(phrases) > 1 else ""
         plural = len(phrases) > 1 or phrases[0].plural
-        if gap.shrink.estimate < _FORETOLD:
+        if min(gap.shrink.estimate, _own(gap)) < _FORETOLD:
             close = "close" if plural else "closes"
             return (
                 f"{causes}: {amounts}{together} {close} the gap, from {_sigmas(gap.after_nuisance_only)} to "
@@ -244,14 +244,18 @@ def _explained(gap: Gap) -> str:
             f"what the sensor's own slips leave of the gap on trials not fitted, {_sigmas(gap.after_nuisance_only)} "
             f"that become {_sigmas(gap.after)}"
         )
-    left = (gap.after_nuisance_only - gap.noise_floor) / (gap.before - gap.noise_floor)
-    if left < _MOSTLY:
-        own = 1.0 - max(gap.after - gap.noise_floor, 0.0) / (gap.after_nuisance_only - gap.noise_floor)
+    if gap.after_nuisance_only - gap.noise_floor < _MOSTLY * (gap.before - gap.noise_floor):
         return (
-            f"{percent(max(own, 0.0))} of what the sensor's own slips leave of the gap on trials not fitted, "
+            f"{percent(_own(gap))} of what the sensor's own slips leave of the gap on trials not fitted, "
             f"{_sigmas(gap.after_nuisance_only)} that become {_sigmas(gap.after)}"
         )
     return f"{percent(gap.shrink.estimate)} of the gap on trials not fitted"
+
+
+def _own(gap: Gap) -> float:
+    """Return what the effects shrink of the gap that the refitted sensor leaves, 1 where it leaves none."""
+    left = gap.after_nuisance_only - gap.noise_floor
+    return 1.0 - max(gap.after - gap.noise_floor, 0.0) / left if left > 0.0 else 1.0
 
 
 def _scope(diagnosis: Diagnosis) -> str:
