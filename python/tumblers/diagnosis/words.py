@@ -95,7 +95,8 @@ _CLOSED = 1.2
 _SLIPS = 0.1
 # And where it is less than this, that they are about that alone is said.
 _MOSTLY = 0.9
-_A_PERCENT = 0.015
+# The interval of a shrink that ends below this would read from 1 to 1 %.
+_ONE_PERCENT = 0.015
 
 
 def summary(diagnosis: Diagnosis) -> str:
@@ -239,14 +240,11 @@ def _capital(text: str) -> str:
 def _explained(gap: Gap) -> str:
     if not isfinite(gap.shrink.estimate):
         return "the gap, though no trial was left to check it on"
-    if gap.after_nuisance_only - gap.noise_floor < _SLIPS * (gap.before - gap.noise_floor):
+    left, whole = gap.after_nuisance_only - gap.noise_floor, gap.before - gap.noise_floor
+    if left < _MOSTLY * whole:
+        share = "" if left < _SLIPS * whole else f"{percent(_own(gap))} of "
         return (
-            f"what the sensor's own slips leave of the gap on trials not fitted, {_sigmas(gap.after_nuisance_only)} "
-            f"that become {_sigmas(gap.after)}"
-        )
-    if gap.after_nuisance_only - gap.noise_floor < _MOSTLY * (gap.before - gap.noise_floor):
-        return (
-            f"{percent(_own(gap))} of what the sensor's own slips leave of the gap on trials not fitted, "
+            f"{share}what the sensor's own slips leave of the gap on trials not fitted, "
             f"{_sigmas(gap.after_nuisance_only)} that become {_sigmas(gap.after)}"
         )
     return f"{percent(gap.shrink.estimate)} of the gap on trials not fitted"
@@ -356,7 +354,7 @@ def _how_far(diagnosis: Diagnosis) -> str:
     if count and isfinite(shrink.estimate):
         share = f"; the gap shrinks by {percent(shrink.estimate)}"
         # An interval of what is next to nothing would only repeat it.
-        if isfinite(shrink.low) and isfinite(shrink.high) and shrink.high >= _A_PERCENT:
+        if isfinite(shrink.low) and isfinite(shrink.high) and shrink.high >= _ONE_PERCENT:
             share += f" (90 % interval {100.0 * shrink.low:.0f} to {percent(shrink.high)})"
     else:
         share = ""
