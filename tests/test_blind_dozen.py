@@ -11,8 +11,8 @@ from tumblers.blind.score import score
 
 SEED, COUNT = 3, 12
 # The least share that is right. Of so few datasets one weighs a fifth or a third, and where motion is chaotic the
-# last bits of another machine's arithmetic may turn one: each allows for one miss more than was seen here, but for the
-# pair and the cause outside the catalogue, of which there is one each.
+# last bits of another machine's arithmetic may turn one: each allows for one miss more than was seen here. Not so the
+# pair and the cause outside the catalogue, of which there is one each, and the median, which has two of five below it.
 THRESHOLDS = {
     "one effect of 3 sigma or more: named first or truly tied": 0.6,
     "two effects: both named": 1.0,
