@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from tumblers.dataset import Outcome
 from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.fit import Fitter
-from tumblers.diagnosis.loss import FAR, robust_cost
+from tumblers.diagnosis.fit import Fitter, _Descent
+from tumblers.diagnosis.loss import FAR, HUBER, huber, robust_cost
 from tumblers.diagnosis.search import Search
 from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects.magnetization_strength import MagnetizationStrength
@@ -20,11 +23,46 @@ def test_a_trial_that_no_model_can_follow_counts_by_its_logarithm() -> None:
     comparison = Comparison(measure(plan(), seed=2), Simulator(measure(plan(), seed=2)))
     fitter, residual = Fitter(comparison), comparison.residual(comparison.nominal_paths)
     count = comparison.sizes[0] - len(comparison.floors[0].outcome_scale)
-    outcomes = robust_cost(residual.trials[0][count:])
+    outcomes = comparison.alike * robust_cost(residual.trials[0][count:])
     for size, expected in ((1e-3, 1e-6 * count), (3.0, FAR * count * np.log1p(9.0 / FAR))):
         residual.trials[0][:count] = size
         assert fitter.trial_cost(residual, 0) - outcomes == pytest.approx(expected, rel=1e-5)
     assert comparison.weight(0, residual.trials[0]) == pytest.approx(1.0 / (1.0 + 9.0 / FAR))
+
+
+def test_an_outcome_counts_for_as_many_numbers_of_a_track_as_speak_for_one() -> None:
+    dataset = measure(plan(PLANS[:1]), seed=2)
+    speed = Outcome(mean_speed_m_per_s=6e-3, sigma_m_per_s=1e-3)
+    dataset = replace(dataset, trials=(replace(dataset.trials[0], outcome=speed),))
+    comparison = Comparison(dataset, Simulator(dataset))
+    fitter, residual = Fitter(comparison), comparison.residual(comparison.nominal_paths)
+    assert comparison.alike > 2.0
+    values = residual.trials[0]
+    count = comparison.floors[0].tracked
+    assert len(values) == count + 1
+    before = fitter.trial_cost(residual, 0)
+    values[count:] = np.sqrt(values[count:] ** 2 + 2.0)
+    assert fitter.trial_cost(residual, 0) - before == pytest.approx(2.0 * comparison.alike, rel=1e-9)
+    assert comparison.weighed[0] == pytest.approx(count + comparison.alike)
+    assert fitter.weights(residual, [0])[-1] ** 2 == pytest.approx(comparison.alike)
+
+
+def test_least_squares_see_the_loss_of_the_objective() -> None:
+    dataset = measure(plan(PLANS[:2]), (MagnetizationStrength(factor=0.9),))
+    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
+    (hypothesis,) = Search(fitter, [MagnetizationStrength], quiet, 0).possible
+    descent = _Descent(fitter, hypothesis, np.array([0.05]), fitter.trials, 1.0)
+    # Differences of a track and of an outcome on either side of Huber's limit, weighed as in the rows.
+    size = np.geomspace(0.1, 30.0, len(descent.limits))
+    rows = size * descent.limits / HUBER
+    value, slope, bend = descent.loss(rows**2)
+    assert value == pytest.approx(huber(size) * (descent.limits / HUBER) ** 2, rel=1e-9)
+    # Away from the limit, where the bend jumps.
+    smooth = np.abs(size / HUBER - 1.0) > 1e-2
+    h = 1e-5 * rows**2
+    up, down = descent.loss(rows**2 + h), descent.loss(rows**2 - h)
+    assert slope[smooth] == pytest.approx(((up[0] - down[0]) / (2.0 * h))[smooth], rel=1e-6)
+    assert bend[smooth] == pytest.approx(((up[1] - down[1]) / (2.0 * h))[smooth], rel=1e-6, abs=1e-12)
 
 
 def test_a_descent_ends_where_the_fit_does_and_its_derivatives_serve_again(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -46,7 +46,8 @@ def test_the_determinant_is_that_of_the_covariances() -> None:
         # Or a wrong term of theirs would not be seen.
         assert outcomes > 1.0
         # Inverting an inverse costs some digits.
-        assert floor.log_determinant == pytest.approx(expected + outcomes, rel=1e-9)
+        assert floor.log_determinant == pytest.approx(expected, rel=1e-9)
+        assert floor.outcome_log_determinant == pytest.approx(outcomes, rel=1e-12)
 
 
 def test_without_the_changes_the_determinant_is_that_of_the_sensor() -> None:

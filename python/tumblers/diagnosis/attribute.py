@@ -201,7 +201,7 @@ def _ranked(
     contenders: Sequence[Contender], comparison: Comparison, effects: Sequence[str], nominal_is_right: bool
 ) -> tuple[list[Contender], float]:
     alike = comparison.alike
-    dispersion = alike * max(1.0, min(contender.cost for contender in contenders) / comparison.count)
+    dispersion = alike * max(1.0, min(contender.cost for contender in contenders) / sum(comparison.weighed))
     # One effect alone on the list would be likelier than none before anything is seen, and lead without doing anything.
     listed = max(len(effects), 2)
     prior = {
@@ -212,7 +212,7 @@ def _ranked(
     place = {name: k for k, name in enumerate(effects)}
     scored = []
     for c in contenders:
-        likelihood = -0.5 * (c.total + (alike - 1.0) * comparison.outcome_cost(c.residual)) / dispersion
+        likelihood = -0.5 * c.total / dispersion
         evidence = likelihood + prior[len(c.names)]
         evidence -= _PER_PLACE * sum(place[name] for name in c.names)
         if c.fit is not None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import cached_property
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -15,7 +16,7 @@ from ..dataset import Dataset
 from ..effects.base import Effect
 from .built_floors import BuiltFloors
 from .floor import Floor, Sensitivity, choose_steps, measure_sensitivity
-from .loss import robust_cost, weight_of
+from .loss import weight_of
 from .nuisances import Fitted, NuisanceFit
 from .observed import observe
 from .pose import Path
@@ -106,7 +107,7 @@ class Comparison:
         self.step_credits: dict[tuple[float, ...], float] = {}
         self._run_nominal()
         self.take_noise_of(())
-        self._nominal_log_determinant = sum(floor.log_determinant for floor in self.floors)
+        self._nominal_log_determinant = sum(map(self.log_determinant_of, self.floors))
 
     def _run_nominal(self) -> None:
         self.nominal_paths = self.simulator.run([Job(i) for i in range(len(self.readers))])
@@ -191,22 +192,41 @@ class Comparison:
     @property
     def log_determinant(self) -> float:
         """Ln det of the noise's covariance over that of the nominal model's."""
-        return sum(floor.log_determinant for floor in self.floors) - self._nominal_log_determinant
+        return sum(map(self.log_determinant_of, self.floors)) - self._nominal_log_determinant
+
+    def log_determinant_of(self, floor: Floor) -> float:
+        """Return ln det of the noise of a trial, an outcome counting as in the objective.
+
+        Parameters
+        ----------
+        floor
+            The noise.
+        """
+        return floor.log_determinant + self.alike * floor.outcome_log_determinant
 
     @property
     def count(self) -> int:
         """Number of numbers that were measured."""
         return sum(self.sizes)
 
-    @property
+    @cached_property
     def alike(self) -> float:
-        """How many neighbouring numbers of the tracks count as one: those of 0.16 s, up to eight."""
+        """How many neighbouring numbers of the tracks count as one: those of 0.16 s, up to eight.
+
+        Outcomes are few, and neighbours of none: each counts for as many in the objective, which is divided by it where
+        hypotheses are compared.
+        """
         tracked = [i for i, reader in enumerate(self.readers) if len(reader.observed.time_s)]
         if not tracked:
             return 1.0
         intervals = [self.readers[i].observed.frame_interval_s for i in tracked]
         found = [min(max(_ALIKE_S / interval, 1.0), _MOST_ALIKE) if interval > 0.0 else 1.0 for interval in intervals]
         return float(np.average(found, weights=[max(self.sizes[i], 1) for i in tracked]))
+
+    @property
+    def weighed(self) -> tuple[float, ...]:
+        """For how many numbers of a track each trial counts in the objective."""
+        return tuple(floor.tracked + self.alike * len(floor.outcome_scale) for floor in self.floors)
 
     @property
     def sizes(self) -> tuple[int, ...]:
@@ -225,17 +245,6 @@ class Comparison:
         """
         count = self.floors[trial].tracked
         return weight_of(values[:count], count)
-
-    def outcome_cost(self, residual: Residual) -> float:
-        """Return Σρ of the outcomes alone: they are few and count each for one, neighbouring frames do not.
-
-        Parameters
-        ----------
-        residual
-            Against the noise of any moment.
-        """
-        counts = (len(reader.outcome_kinds) for reader in self.readers)
-        return sum(robust_cost(v[len(v) - count :]) for v, count in zip(residual.trials, counts, strict=True))
 
     def labels(self, trial: int) -> list[tuple[str, Floats]]:
         """Return the channels (and outcomes) of a trial's differences and the times of each, s, in their order.

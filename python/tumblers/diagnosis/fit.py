@@ -3,15 +3,16 @@
 The objective is
 
 ```text
-Σ_t κ n_t ln(1 + Σ ρ(r)/(κ n_t)) + Σ ρ(outcomes) + Σ (nuisance/σ)² + Σ (u/0.5)²,      ρ Huber's, quadratic to 4 sigmas
+Σ_t κ n_t ln(1 + Σ ρ(r)/(κ n_t)) + n_c Σ ρ(outcomes) + Σ (nuisance/σ)² + Σ (u/0.5)²,   ρ Huber's, quadratic to 4 sigmas
 ```
 
 over the whitened differences r of the n_t numbers of each track that is fitted, the sensor's nuisances at their optimum
-for every point; where a beginning alone is compared, n_t is still of the whole track. The logarithm is what is left of
-a trial's likelihood when its noise may be any multiple of the floor: past a threshold, or where motion is chaotic, a
-trial can be far from the best of models, and must not decide alone. Least squares see it as a weight of the trial,
-`1/(1 + mean square/κ)`, taken at the start and once more on the way. The derivatives are finite differences, all of
-them one native batch.
+for every point; where a beginning alone is compared, n_t is still of the whole track. In what is concluded n_c numbers
+of a track count as one (`Comparison.alike`) and an outcome for itself: it has the weight of as many. The logarithm is
+what is left of a trial's likelihood when its noise may be any multiple of the floor: past a threshold, or where motion
+is chaotic, a trial can be far from the best of models, and must not decide alone. Least squares see it as a weight of
+the trial, `1/(1 + mean square/κ)`, taken at the start and once more on the way. The derivatives are finite differences,
+all of them one native batch.
 """
 
 from __future__ import annotations
@@ -172,7 +173,8 @@ class Fitter:
         values = residual.trials[trial]
         track = self.comparison.floors[trial].tracked
         far = FAR * max(track, 1)
-        return far * float(np.log1p(robust_cost(values[:track]) / far)) + robust_cost(values[track:])
+        outcomes = self.comparison.alike * robust_cost(values[track:])
+        return far * float(np.log1p(robust_cost(values[:track]) / far)) + outcomes
 
     def take_likeliest_noise(
         self, effects: tuple[Effect, ...], around: tuple[Effect, ...] | None = None
@@ -206,7 +208,8 @@ class Fitter:
             for floors in known:
                 comparison.floors = floors
                 residual = comparison.residual(paths) if mixed is None else comparison.held(paths, mixed)
-                totals.append([self.trial_cost(residual, i) + floors[i].log_determinant for i in self.trials])
+                determinants = map(comparison.log_determinant_of, floors)
+                totals.append([self.trial_cost(residual, i) + d for i, d in enumerate(determinants)])
             return tuple(np.argmin(np.array(totals), axis=0).tolist())
 
         def take(chosen: tuple[int, ...]) -> None:
@@ -227,7 +230,7 @@ class Fitter:
         return tuple(_SHARES[k] for k in best)
 
     def weights(self, residual: Residual, chosen: Sequence[int]) -> Floats:
-        """Return the square roots of the weights of the trials' numbers, 1 for outcomes, shape (n,).
+        """Return the square roots of the weights of the trials' numbers in the objective, shape (n,).
 
         Parameters
         ----------
@@ -238,7 +241,7 @@ class Fitter:
         """
         rows = []
         for i in chosen:
-            row = np.ones(len(residual.trials[i]))
+            row = np.full(len(residual.trials[i]), np.sqrt(self.comparison.alike))
             row[: self.comparison.floors[i].tracked] = np.sqrt(self.comparison.weight(i, residual.trials[i]))
             rows.append(row)
         return np.concatenate(rows) if rows else np.empty(0)
@@ -371,7 +374,10 @@ class _Descent:
         margin = 1e-9 * (high - low)
         self.bounds = low, high
         self.start = np.clip(inside, low + margin, high - margin)
-        self.weights = fitter.weights(self.at(self.start), chosen)
+        still = self.at(self.start)
+        self.weights = fitter.weights(still, chosen)
+        # Huber's loss turns at the same difference for an outcome, whatever its weight.
+        self.limits = HUBER * np.maximum(np.concatenate([self.weights, np.ones(still.prior.size + len(start))]), 1.0)
 
     def at(self, point: Floats) -> Residual:
         """Return how wrong the hypothesis is at a point."""
@@ -388,6 +394,14 @@ class _Descent:
         """Return what least squares sees, by the trials' weights of the moment."""
         differences = self.weights * residual.over(self.chosen)
         return np.concatenate([differences, residual.prior, point / PRIOR_SIGMA])
+
+    def loss(self, squares: Floats) -> Floats:
+        """Return ρ, ρ' and ρ'' by the square of each row, shape (3, n)."""
+        size = np.sqrt(np.maximum(squares, self.limits**2))
+        far = squares > self.limits**2
+        value = np.where(far, self.limits * (2.0 * size - self.limits), squares)
+        slope = self.limits / size
+        return np.array([value, np.where(far, slope, 1.0), np.where(far, -0.5 * slope / size**2, 0.0)])
 
     def jacobian(self, point: Floats) -> Floats:
         """Return the derivatives of `rows` at a point, shape (n, p)."""
@@ -414,8 +428,7 @@ class _Descent:
                 point,
                 jac=self.jacobian,
                 bounds=self.bounds,
-                loss="huber",
-                f_scale=HUBER,
+                loss=self.loss,
                 max_nfev=evaluations if weighing == 0 else max(evaluations // 2, 2),
                 ftol=1e-3,
                 xtol=1e-4,
@@ -433,7 +446,7 @@ class _Descent:
         """Return the fit that ends at a point, with the derivatives there."""
         residual = self.at(point)
         fitted = np.concatenate([self.weights * residual.over(self.chosen), residual.prior])
-        robust = np.minimum(1.0, HUBER / np.maximum(np.abs(fitted), 1e-12)) ** 0.5
+        robust = np.minimum(1.0, self.limits[: len(fitted)] / np.maximum(np.abs(fitted), 1e-12)) ** 0.5
         slopes = self.jacobian(point)[: len(fitted)] * robust[:, None]
         steps = self._moved[point.tobytes()].steps
         return Fit(self.hypothesis, point, residual, self.cost(point), slopes, steps)

@@ -85,8 +85,8 @@ class Floor:
     tolerance
         Whitened change of the differences with each nominal number moved by its tolerance, and in the longest step,
         channels then outcomes, shape (k, `SHARED`).
-    log_determinant
-        ln det of the covariances of all channels and outcomes.
+    log_determinant, outcome_log_determinant
+        ln det of the covariances of all channels, and of all outcomes.
     numerical_sigmas
         Change when the step is halved, in noise sigmas: root mean square along the path, or an outcome's if more.
     tolerance_sigmas
@@ -98,6 +98,7 @@ class Floor:
     outcome_scale: dict[str, float]
     tolerance: Floats
     log_determinant: float
+    outcome_log_determinant: float
     numerical_sigmas: float
     tolerance_sigmas: float
 
@@ -352,10 +353,8 @@ def build_floor(reader: Reader, moved: Sensitivity, share: float) -> Floor:
         outcome_scale=scale,
         tolerance=np.concatenate([block.reshape(-1, SHARED) for block in columns]),
         # Of the inverse Cholesky factors only the diagonals count.
-        log_determinant=-2.0
-        * float(
-            sum(np.sum(np.log(np.diag(w))) for w in whiten.values()) + sum(np.log(value) for value in scale.values())
-        ),
+        log_determinant=-2.0 * float(sum(np.sum(np.log(np.diag(w))) for w in whiten.values())),
+        outcome_log_determinant=-2.0 * float(sum(np.log(value) for value in scale.values())),
         numerical_sigmas=_size(reader, moved.numerical, moved.numerical_terms),
         tolerance_sigmas=float(
             np.sqrt(

@@ -143,8 +143,7 @@ def _log_posterior(
     for k, residual in enumerate(fitter.residuals(hypothesis, list(points))):
         cost = fitter.cost(residual, points[k])
         prior = float(np.sum((points[k] / PRIOR_SIGMA) ** 2))
-        outcomes = fitter.comparison.outcome_cost(residual)
-        out[k] = -0.5 * ((cost - outcomes - prior) / attribution.dispersion + outcomes + prior)
+        out[k] = -0.5 * ((cost - prior) / attribution.dispersion + prior)
     return out
 
 

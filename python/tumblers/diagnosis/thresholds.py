@@ -46,7 +46,7 @@ def beyond_thresholds(fitter: Fitter, hypothesis: Hypothesis, nominal: Residual)
     if hypothesis.free > _FEW:
         return []
     # By number: a robot that soon leaves the view says little, but may be farther off than any.
-    off = [fitter.trial_cost(nominal, i) / max(fitter.comparison.sizes[i], 1) for i in fitter.trials]
+    off = [fitter.trial_cost(nominal, i) / max(fitter.comparison.weighed[i], 1.0) for i in fitter.trials]
     wrong = tuple(int(i) for i in np.argsort(off, kind="stable")[-_WORST:] if off[i] > 1.0)
     ends = [
         end * unit for ends in (hypothesis.low, hypothesis.high) for end, unit in zip(ends, np.eye(count), strict=True)
