@@ -12,7 +12,7 @@ from tumblers.diagnosis.beginnings import MANY
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.contender import Contender, of_fit, of_nominal
 from tumblers.diagnosis.fit import Fitter
-from tumblers.diagnosis.own_noise import NEAR, beside
+from tumblers.diagnosis.own_noise import NEAR, OWN, beside
 from tumblers.diagnosis.pairs import Pairs
 from tumblers.diagnosis.search import Search, _kept
 from tumblers.diagnosis.simulator import LONGEST_STEP_S, Simulator
@@ -59,6 +59,16 @@ def test_what_longer_steps_found_counts_by_what_it_is_in_the_right_ones(monkeypa
     assert best.total == pytest.approx(beside(fitter, best, best).total, rel=1e-9)
     (again,) = (contender for contender in made if contender.names == flattered[0].names)
     assert again.total > best.total + NEAR
+
+
+def test_where_the_nominal_model_is_right_too_what_leads_is_held_against_its_own_noise() -> None:
+    dataset = measure(plan(PLANS[:3]), seed=3)
+    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
+    nominal, *others = Search(fitter, [CATALOGUE[name] for name in MANY_KINDS], quiet, 0).contenders()
+    assert not nominal.names
+    held = [contender for contender in others if contender.settled]
+    assert len(held) >= OWN
+    assert held[0].total == pytest.approx(beside(fitter, held[0], held[0]).total, rel=1e-9)
 
 
 def test_what_was_settled_does_not_give_way_to_what_was_not() -> None:

@@ -92,7 +92,8 @@ class Search:
         return self._of_strong(nominal) if not is_right(self.comparison, nominal.residual) else self._of_weak(nominal)
 
     def _of_weak(self, nominal: Contender) -> list[Contender]:
-        singles = self._singles(nominal)
+        # The nominal model's noise may hide what an effect explains: the motion that it moves is the one that varies.
+        singles = settled(self.fitter, self._singles(nominal), self.tell, OWN, MOST_OWN)
         if not singles or singles[0].total > nominal.total - self.worth:
             return [nominal, *singles]
         nominal, singles = resolved(self.fitter, nominal, singles, self.tell)
