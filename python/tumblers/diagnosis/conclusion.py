@@ -22,7 +22,7 @@ __all__ = ["concluded", "in_steps_of", "resolved"]
 
 # What is less than about e^12 behind the best, or as good by `AS_GOOD`, is fitted as far, so many at most: a total
 # moves by some e^3 with the place around which its noise is measured, and by more with where a fit stopped.
-_OPEN, _EQUALLY_FAR = 12.0, 3
+_OPEN, _EQUALLY_FAR = 12.0, 4
 
 
 def in_steps_of(fitter: Fitter, leader: Contender, contenders: Sequence[Contender], tell: OnPhase) -> list[Contender]:
@@ -106,6 +106,8 @@ def _equally_far(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase)
     near = [k for k in order if scores[k] < open_to or alike_kind[k]]
     if len(near) == 1:
         return made
+    # Those first that could be named in the place of the best.
+    near.sort(key=lambda k: len(made[k].names) != len(best.names))
     for n, k in enumerate(near[:_EQUALLY_FAR]):
         tell("fitting those near the best as far", n, min(len(near), _EQUALLY_FAR))
         made[k] = as_far(fitter, made[k], alike)
