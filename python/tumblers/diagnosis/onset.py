@@ -1,23 +1,24 @@
 """A gap that sets in at a moment or in a place that the trials share: until then the model is right.
 
-A number is off where it is beyond two standard deviations, as q = 5 % of noise is; in x, y and heading, which stay off
-once they are, what counts is by how much it is off from those just before. A region S of time or place is held against
-a cause that acts all along. Of a channel of a trial, k of n numbers are off before the trial comes to S, k' of n' in S,
-and k'' of n'' after it:
+How far off numbers are is counted in steps of one standard deviation, so that none decides alone; in x, y and heading,
+which stay off once they are, what counts is by how much each is off from those just before. A region S of time or place
+is held against a cause that acts all along. Of a channel of a trial, k_j numbers are off by step j before the trial
+comes to S, k'_j in S, and k''_j after it:
 
 ```text
-Λ(S) = Σ [ln L(k, n; q) + ln L(k', n') + ln L(k'', n'') - ln L(k + k' + k'', n + n' + n'')] / a
-ln L(k, n; p) = k ln p + (n - k) ln(1 - p),      p = max(k/n, q) where none is given
+Λ(S) = Σ [ln L(k; 1) + ln L(k') + ln L(k'') - ln L(k + k' + k'')] / a
+ln L(k; v) = Σ_j k_j ln[(1 - ε) P(N(0, v) in step j) + ε/J],      v >= 1 the likeliest where none is given
 ```
 
 a is how many neighbouring numbers count as one. What comes after S need not be right: a robot that was held up may stay
 off its course. The first half of a cycle does not count, for until then no cause has had its turn, nor does a trial
 whose field does not rotate.
 
-The likeliest S is told where it is three standard deviations clear, over all that were looked at, where more of what is
-gained lies in it than of the numbers, and where two trials or more speak for it and few had rather a region of their
-own: what a cause that acts all along adds up to shows in each trial at another time and place. The free shares of many
-channels reach the first of these bounds by chance; it is with the last that noise tells nothing.
+The likeliest S of the n that were looked at is told where it is three standard deviations clear, over all of them, and
+more of what is gained lies in it than of the numbers, and where two trials or more speak for it and few had rather a
+region of their own, at ln n each: what a cause that acts all along adds up to shows in each trial at another time and
+place. The free variances of many channels reach the first of these bounds by chance; it is with the last that noise
+tells nothing.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ from math import log
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import erf
 
 from .cells import Cells
 from .comparison import Comparison, Residual
@@ -40,10 +42,12 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 Mask = NDArray[np.bool_]
 
-# Two standard deviations, squared, and the share of noise that is beyond.
-_OFF, _BY_CHANCE = 4.0, 0.05
-# The share of all, short of what has no logarithm.
-_ALL = 1.0 - 1e-12
+# Ends of the steps, in standard deviations, the variances that are tried, and the share ε that is of any step.
+_ENDS, _VARIANCES, _ANY = (0.0, 1.0, 2.0, 3.0, np.inf), np.geomspace(1.0, 1e3, 25), 0.02
+_STEPS = len(_ENDS) - 1
+_SHARES = np.diff(erf(np.array(_ENDS) / np.sqrt(2.0 * _VARIANCES[:, None])))
+# ln of the probability of a step by the variance, shape (variances, steps).
+_LOG_SHARES = np.log((1.0 - _ANY) * _SHARES + _ANY / _STEPS)
 # Three standard deviations as a logarithm of likelihoods.
 _CLEAR = 4.5
 # What trials have in common of what each would have in a region of its own.
@@ -118,10 +122,9 @@ def begins_at_place(comparison: Comparison, residual: Residual, paths: Sequence[
         mine = np.flatnonzero(counted)[cells.trial[counted] == trial]
         order = np.argsort(cells.time_s[mine], kind="stable")
         mine, part = mine[order], bins[cells.trial[counted] == trial][order]
-        each = np.zeros((len(mine), 2, len(CHANNELS)))
-        each[np.arange(len(mine)), 1, cells.channel[mine]] = 1.0
-        each[:, 0] = each[:, 1] * (cells.fresh[mine] > _OFF)[:, None]
-        by_part = np.zeros((count, 2, len(CHANNELS)))
+        each = np.zeros((len(mine), _STEPS, len(CHANNELS)))
+        each[np.arange(len(mine)), _step(cells.fresh[mine]), cells.channel[mine]] = 1.0
+        by_part = np.zeros((count, _STEPS, len(CHANNELS)))
         np.add.at(by_part, part, each)
         begun, up_to = _sums(each), _sums(by_part)
         before, inside = begun[_entries(part, count)[first, last]], up_to[last + 1] - up_to[first]
@@ -140,9 +143,15 @@ def _counted(cells: Cells, paths: Sequence[Path | None]) -> Mask:
 
 
 def _tally(cells: Cells, mask: Mask) -> Floats:
-    """Return how many numbers are off in each channel, and how many there are, shape (2, channels)."""
-    masks = (mask & (cells.fresh > _OFF), mask)
-    return np.stack([np.bincount(cells.channel[m], minlength=len(CHANNELS)) for m in masks]).astype(np.float64)
+    """Return how many numbers of each channel are off by each step, shape (steps, channels)."""
+    counts = np.zeros((_STEPS, len(CHANNELS)))
+    np.add.at(counts, (_step(cells.fresh[mask]), cells.channel[mask]), 1.0)
+    return counts
+
+
+def _step(loss: Floats) -> Ints:
+    """Return by which step numbers are off, by their loss, which is their square there."""
+    return np.searchsorted(np.square(_ENDS[1:-1]), loss, side="right")
 
 
 def _sums(values: Floats) -> Floats:
@@ -167,20 +176,17 @@ def _entries(part: Ints, count: int) -> Ints:
     return np.asarray(np.minimum.accumulate(table, axis=1))
 
 
-def _log_likelihood(tally: Floats, share: Floats | float) -> Floats:
-    """Return ln L of tallies (..., 2, channels), shape (..., channels)."""
-    off, count = tally[..., 0, :], tally[..., 1, :]
-    return np.asarray(off * np.log(share) + (count - off) * np.log1p(-np.minimum(share, _ALL)))
-
-
 def _likeliest(tally: Floats) -> Floats:
-    share = tally[..., 0, :] / np.maximum(tally[..., 1, :], 1.0)
-    return _log_likelihood(tally, np.maximum(share, _BY_CHANCE))
+    """Return ln L of tallies (..., steps, channels) at their likeliest variance, shape (..., channels)."""
+    most = np.full((*tally.shape[:-2], tally.shape[-1]), -np.inf)
+    for logs in _LOG_SHARES:
+        np.maximum(most, np.einsum("...jc,j->...c", tally, logs), out=most)
+    return most
 
 
 def _evidence(before: Floats, inside: Floats, past: Floats) -> Floats:
-    """Return Λ(S) but for a, shape (...), of tallies (..., 2, channels)."""
-    apart = _log_likelihood(before, _BY_CHANCE) + _likeliest(inside) + _likeliest(past)
+    """Return Λ(S) but for a, shape (...), of tallies (..., steps, channels)."""
+    apart = np.einsum("...jc,j->...c", before, _LOG_SHARES[0]) + _likeliest(inside) + _likeliest(past)
     return np.asarray(np.sum(apart - _likeliest(before + inside + past), axis=-1))
 
 
@@ -192,11 +198,12 @@ def _shared(evidence: Floats) -> int | None:
     evidence
         Λ of each region in each trial, shape (regions, trials).
     """
-    best = int(np.argmax(evidence.sum(axis=1)))
+    best, chosen = int(np.argmax(evidence.sum(axis=1))), log(len(evidence))
     if np.count_nonzero(evidence[best] > 0.0) < 2:
         return None
-    told, own = float(evidence[best].sum()), float(np.maximum(evidence.max(axis=0), 0.0).sum())
-    return best if told > _CLEAR + log(len(evidence)) and told >= _SHARED * own else None
+    told = float(evidence[best].sum())
+    own = float(np.maximum(np.maximum(evidence.max(axis=0) - chosen, evidence[best]), 0.0).sum())
+    return best if told > _CLEAR + chosen and told >= _SHARED * own else None
 
 
 def _measured_y(comparison: Comparison, residual: Residual, cells: Cells) -> Floats:
