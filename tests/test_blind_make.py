@@ -4,6 +4,7 @@ import json
 import multiprocessing
 import shutil
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -15,13 +16,14 @@ from tumblers import InputError, dataset
 from tumblers.blind import draw
 from tumblers.blind.answer import seal
 from tumblers.blind.commands import blind_app
+from tumblers.blind.jitter import DIMENSIONS, Jitter
 from tumblers.blind.layout import draw_lab, world_scenario
 from tumblers.blind.make import make
 from tumblers.blind.records import read_records
 from tumblers.blind.repeat import REPEAT_FORMAT
 from tumblers.blind.schedule import task
 from tumblers.blind.strength import strength
-from tumblers.blind.world import watch
+from tumblers.blind.world import Scene, watch
 from tumblers.effects.catalogue import CATALOGUE
 
 # Worlds without an effect are quick to draw.
@@ -161,6 +163,30 @@ def test_strength_takes_out_what_the_sensor_may_be_off() -> None:
     channels = len([c for c in lab.channels if not c.startswith("q")]) + 3 * ("qw" in lab.channels)
     most = 30e-6 / lab.sensor.position_noise_m / np.sqrt(channels)
     assert 0.2 * most < strength(alone, far, plain).sigma < 1.1 * most
+
+
+def test_strength_takes_out_what_the_nominal_numbers_may_be_off() -> None:
+    lab, jitter = draw_lab(np.random.default_rng(2))
+    frames = [lab.frames(plan) for plan in lab.plans]
+
+    def seen(other: Jitter) -> list[Scene]:
+        scenarios = [world_scenario(lab, plan, other) for plan in lab.plans]
+        return [watch(s, (), f, solver="reduced") for s, f in zip(scenarios, frames, strict=True)]
+
+    plain, each = seen(jitter), jitter.each_moved()
+    assert len(each) == 6 + len(jitter.dimensions)
+    moved = [seen(other) for other in each]
+    # The first length, by one and a half of its standard deviation and by ten: two are taken out.
+    first, *others = jitter.dimensions
+
+    def longer(deviations: float) -> list[Scene]:
+        return seen(replace(jitter, dimensions=(first * (1.0 + deviations * DIMENSIONS), *others)))
+
+    little, much = longer(1.5), longer(10.0)
+    # What is left is the bend between one deviation and one and a half.
+    assert strength(lab, little, plain, moved).sigma < 0.4 * strength(lab, little, plain).sigma
+    whole, left = strength(lab, much, plain).sigma, strength(lab, much, plain, moved).sigma
+    assert 0.0 < left < whole
 
 
 def _moved(poses, by_m):  # type: ignore[no-untyped-def]

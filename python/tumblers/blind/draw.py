@@ -49,6 +49,7 @@ class _World:
     lab: Lab
     jitter: Jitter
     plain: tuple[Scene, ...]
+    moved: tuple[tuple[Scene, ...], ...]
     jitter_sigma: float
 
     def scenes(
@@ -69,7 +70,7 @@ class _World:
     def strength(self, laws: Sequence[Law]) -> Strength | None:
         """Return how much the laws show, or None where the world does not stand them."""
         try:
-            return strength(self.lab, self.scenes(laws), self.plain)
+            return strength(self.lab, self.scenes(laws), self.plain, self.moved)
         except (ArithmeticError, InputError):
             return None
 
@@ -77,7 +78,7 @@ class _World:
         """Return whether the world with its causes hardly depends on its step: a lab shows what it sees again."""
         try:
             scenes = self.scenes(laws)
-            shown, stepped = strength(self.lab, scenes, self.plain), self.scenes(laws, finer=_FINER)
+            shown, stepped = strength(self.lab, scenes, self.plain, self.moved), self.scenes(laws, finer=_FINER)
             return strength(self.lab, stepped, scenes).sigma <= max(QUIET_SIGMA, REPEATS * shown.sigma)
         except (ArithmeticError, InputError):
             return False
@@ -163,8 +164,9 @@ def _draw_world(rng: np.random.Generator) -> _World | None:
             continue
         shown = jitter_strength(lab, jitter)
         if shown.sigma <= QUIET_SIGMA and max(shown.by_trial) <= QUIET_TRIAL_SIGMA:
-            bare = _World(lab, jitter, (), shown.sigma)
-            return replace(bare, plain=tuple(bare.scenes(())))
+            bare = _World(lab, jitter, (), (), shown.sigma)
+            moved = [tuple(replace(bare, jitter=other).scenes(())) for other in jitter.each_moved()]
+            return replace(bare, plain=tuple(bare.scenes(())), moved=tuple(moved))
     return None
 
 
@@ -220,6 +222,20 @@ def _size(world: _World, cause: Cause, target: float) -> _Sized | None:
     return min(found, key=lambda s: abs(log(s.sigma / target)), default=None)
 
 
+def _as_filmed(lab: Lab, shown: Strength, axis: str, region: tuple[float, float]) -> tuple[float, float]:
+    """Return a region as the lab's films have it: until the last ends, and of the cycle no narrower than a frame."""
+    low, high = region
+    if axis == "time_s":
+        return low, min(high, max(plan.duration_s for plan in lab.plans))
+    if axis == "cycle_phase_deg":
+        # In the trial that shows the cause most.
+        clear = max(zip(shown.by_trial, lab.plans, strict=True), key=lambda pair: pair[0])[1]
+        if isinstance(clear.field, RotatingField):
+            half = 180.0 * clear.field.frequency_Hz / lab.frames_per_second
+            return low - half, high + half
+    return region
+
+
 def _measured(
     kind: str, world: _World, sized: list[_Sized], rng: np.random.Generator, index: int
 ) -> tuple[Dataset, Answer] | None:
@@ -235,11 +251,10 @@ def _measured(
         return None
     trials = [measure(world.lab, i, scene, nuisances, rng) for i, scene in enumerate(scenes)]
     ids = [plan.id for plan in world.lab.plans]
-    last = max(plan.duration_s for plan in world.lab.plans)
     where = {
-        axis: (low, min(high, last) if axis == "time_s" else high)
+        axis: _as_filmed(world.lab, shown, axis, region)
         for s in sized
-        for axis, (low, high) in s.cause.where(s.size).items()
+        for axis, region in s.cause.where(s.size).items()
     }
     answer = Answer(
         kind=kind,

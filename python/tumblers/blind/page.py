@@ -36,8 +36,8 @@ def page_of(scores: Scores) -> str:
         "tumblers blind run DIR\ntumblers blind repeat DIR\n"
         "tumblers blind score DIR --answers DIR/answers.json --page blind-results.md\n```",
         "The strength of a cause is the root mean square of what it changes in all numbers that were observed, in "
-        "standard deviations of their noise, after the sensor's stated tolerances (origin, clock, heading, scale) have "
-        "taken what they can.",
+        "standard deviations of their noise, after the sensor's stated tolerances (origin, clock, heading, scale) and "
+        "two standard deviations of each nominal number have taken what they can: what is less is no gap.",
         _jitter(),
         "Easier than a lab's data in these ways: a lab drops a trial in which the nominal numbers' being off and the "
         f"world's own step alone show by more than {STEADY_SIGMA:g} sigma; it is drawn again where they would move "
@@ -96,7 +96,7 @@ def page_of(scores: Scores) -> str:
         "Overlap of the trials that were pointed out with those that the causes affect by 1 sigma or more (what both "
         "share over all of them), where that is a part of the trials; and regions of other axes in which a cause acts, "
         "overlapped by half or more: what both intervals share over what they cover together, so that a region of "
-        "everything does not count.",
+        "everything does not count. A part of the cycle is no narrower than a frame of the trial that shows it most.",
         _table(
             ("axis", "by half or more", "of"),
             [

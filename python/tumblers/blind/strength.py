@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,12 +20,14 @@ SIGMA_DEG = 1.0
 _SPEED_SHARE, _LEAST_SPEED = 0.01, 3e-5
 # A robot that climbs and one that does not are told apart with this many standard deviations.
 _CLIMB_SIGMA = 3.0
+# So many standard deviations of a nominal number are within its tolerance, as of an origin.
+_MOST_OFF = 2.0
 _ORIGIN, _CLOCK, _PER_TRIAL = 0, 2, 3
 
 
 @dataclass(frozen=True, slots=True)
 class Strength:
-    """Root mean square of a difference in units of the noise, after the nuisances are taken out.
+    """Root mean square of a difference in units of the noise, after what is within tolerances is taken out.
 
     Attributes
     ----------
@@ -44,11 +46,13 @@ def speed_sigma(speed_m_per_s: float) -> float:
     return max(_SPEED_SHARE * abs(speed_m_per_s), _LEAST_SPEED)
 
 
-def strength(lab: Lab, scenes: Sequence[Scene], others: Sequence[Scene]) -> Strength:
+def strength(
+    lab: Lab, scenes: Sequence[Scene], others: Sequence[Scene], moved: Sequence[Sequence[Scene]] = ()
+) -> Strength:
     """Return how much the scenes differ from others of the same lab.
 
     Taken out, by bounded least squares, is what the sensor's stated tolerances allow: the origin and the clock of each
-    trial, the heading and the scale of the camera.
+    trial, the heading and the scale of the camera; and two standard deviations of the nominal numbers.
 
     Parameters
     ----------
@@ -56,21 +60,24 @@ def strength(lab: Lab, scenes: Sequence[Scene], others: Sequence[Scene]) -> Stre
         Where the scenes were made.
     scenes, others
         A scene for each plan, with and without a cause.
+    moved
+        The others with one nominal number after another moved by its standard deviation, a scene for each plan.
     """
-    count = len(lab.plans)
+    count, shared = len(lab.plans), 2 + len(moved)
     blocks: list[NDArray[np.float64]] = []
     sides: list[NDArray[np.float64]] = []
     for i, plan in enumerate(lab.plans):
-        matrix, side = _rows(lab, plan, scenes[i], others[i])
-        block = np.zeros((side.size, _PER_TRIAL * count + 2))
+        matrix, side = _rows(lab, plan, scenes[i], others[i], [those[i] for those in moved])
+        block = np.zeros((side.size, _PER_TRIAL * count + shared))
         block[:, _PER_TRIAL * i : _PER_TRIAL * (i + 1)] = matrix[:, :_PER_TRIAL]
-        block[:, -2:] = matrix[:, _PER_TRIAL:]
+        block[:, -shared:] = matrix[:, _PER_TRIAL:]
         blocks.append(block)
         sides.append(side)
     sensor = lab.sensor
     clock = 0.5 / lab.frames_per_second if sensor.time_offset_s is None else sensor.time_offset_s
     per_trial = [sensor.origin_tolerance_m, sensor.origin_tolerance_m, clock]
-    bound = np.array([*(per_trial * count), sensor.heading_tolerance_deg, sensor.scale_tolerance])
+    camera = [sensor.heading_tolerance_deg, sensor.scale_tolerance]
+    bound = np.array([*(per_trial * count), *camera, *([_MOST_OFF] * len(moved))])
     # In units of their bounds the columns are alike, and a square system of the same solution is quick to solve.
     matrix, side = np.concatenate(blocks) * bound, np.concatenate(sides)
     q, r = np.linalg.qr(matrix)
@@ -81,14 +88,19 @@ def strength(lab: Lab, scenes: Sequence[Scene], others: Sequence[Scene]) -> Stre
     return Strength(float(np.sqrt(np.mean(whole**2))), tuple(float(np.sqrt(mean)) for mean in means))
 
 
-def _rows(lab: Lab, plan: Plan, scene: Scene, other: Scene) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the columns (x0, y0, clock, heading, scale) and the difference, both over the noise."""
+def _rows(
+    lab: Lab, plan: Plan, scene: Scene, other: Scene, moved: Sequence[Scene]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the columns (x0, y0, clock, heading, scale, numbers) and the difference, both over the noise."""
     matrices: list[NDArray[np.float64]] = []
     sides: list[NDArray[np.float64]] = []
 
-    def add(difference: NDArray[np.float64], sigma: float, columns: dict[int, NDArray[np.float64] | float]) -> None:
-        matrix = np.zeros((difference.size, _PER_TRIAL + 2))
-        for column, values in columns.items():
+    def add(
+        differences: Sequence[NDArray[np.float64]], sigma: float, columns: dict[int, NDArray[np.float64] | float]
+    ) -> None:
+        difference, *changes = differences
+        matrix = np.zeros((difference.size, _PER_TRIAL + 2 + len(changes)))
+        for column, values in [*columns.items(), *enumerate(changes, _PER_TRIAL + 2)]:
             matrix[:, column] = values
         seen = np.isfinite(difference) & np.all(np.isfinite(matrix), axis=1) & inside
         matrices.append(matrix[seen] / sigma)
@@ -96,7 +108,8 @@ def _rows(lab: Lab, plan: Plan, scene: Scene, other: Scene) -> tuple[NDArray[np.
 
     if plan.tracked:
         inside = np.max(np.abs(scene.poses.position_m[:, :2]), axis=1) <= lab.view_m
-        seen, nominal = channels_of(scene.poses), channels_of(other.poses)
+        nominal = channels_of(other.poses)
+        seen = [channels_of(one.poses) for one in (scene, *moved)]
         late, early = channels_of(other.after), channels_of(other.before)
         h = other.step_s
         x, y = nominal["x_m"], nominal["y_m"]
@@ -111,24 +124,27 @@ def _rows(lab: Lab, plan: Plan, scene: Scene, other: Scene) -> tuple[NDArray[np.
         for name, columns in nuisances.items():
             if name not in lab.channels:
                 continue
-            difference, rate = seen[name] - nominal[name], (late[name] - early[name]) / h
+            differences, rate = [one[name] - nominal[name] for one in seen], (late[name] - early[name]) / h
             if name == "heading_deg":
-                difference, rate = (difference + 180.0) % 360.0 - 180.0, 0.0 * rate
+                differences, rate = [(d + 180.0) % 360.0 - 180.0 for d in differences], 0.0 * rate
             sigma = lab.sensor.position_noise_m if name.endswith("_m") else lab.sensor.angle_noise_deg
-            add(difference, sigma, {**columns, _CLOCK: rate})
+            add(differences, sigma, {**columns, _CLOCK: rate})
         if "qw" in lab.channels:
-            turn = turn_between(other.poses.orientation, scene.poses.orientation)
+            turns = [turn_between(other.poses.orientation, one.poses.orientation) for one in (scene, *moved)]
             rates = turn_between(other.before.orientation, other.after.orientation) / h
             for i in range(3):
                 columns = {_CLOCK: rates[:, i], 3: 1.0 if i == 2 else 0.0}
-                add(turn[:, i], lab.sensor.angle_noise_deg, columns)
+                add([turn[:, i] for turn in turns], lab.sensor.angle_noise_deg, columns)
     inside = np.array([True])
+
+    def add_outcome(measured: Callable[[Scene], float], sigma: float) -> None:
+        without = measured(other)
+        add([np.array([measured(one) - without]) for one in (scene, *moved)], sigma, {})
+
     if plan.outcome == "speed":
-        without = mean_speed(other, plan.duration_s)
-        add(np.array([mean_speed(scene, plan.duration_s) - without]), speed_sigma(without), {})
+        add_outcome(lambda one: mean_speed(one, plan.duration_s), speed_sigma(mean_speed(other, plan.duration_s)))
     if plan.outcome == "tilt":
-        add(np.array([rest_tilt(scene) - rest_tilt(other)]), SIGMA_DEG, {})
+        add_outcome(rest_tilt, SIGMA_DEG)
     if plan.outcome == "climbs":
-        way = lab.way_m(plan)
-        add(np.array([float(climbs(scene, way)) - float(climbs(other, way))]), 1.0 / _CLIMB_SIGMA, {})
+        add_outcome(lambda one: float(climbs(one, lab.way_m(plan))), 1.0 / _CLIMB_SIGMA)
     return np.concatenate(matrices), np.concatenate(sides)
