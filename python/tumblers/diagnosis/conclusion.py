@@ -15,14 +15,15 @@ from .contender import Contender, likeliest_first, of_nominal
 from .fit import Fitter
 from .hypothesis import SECOND
 from .own_noise import MOST_OWN, OWN, again, against_the_best, each_by_itself, settled
-from .pairs import AS_GOOD
+from .pairs import AS_GOOD, nested
 from .sparse import as_far
 
 __all__ = ["concluded", "in_steps_of", "resolved"]
 
-# What is less than about e^12 behind the best, or as good by `AS_GOOD`, is fitted as far, so many at most: a total
-# moves by some e^3 with the place around which its noise is measured, and by more with where a fit stopped.
-_OPEN, _EQUALLY_FAR = 12.0, 4
+# What is less than about e^12 behind the best, or as good by `AS_GOOD`, is fitted as far, so many single effects and
+# pairs at most: a total moves by some e^3 with the place around which its noise is measured, and by more with where a
+# fit stopped.
+_OPEN, _EQUALLY_FAR, _PAIRS_EQUALLY_FAR = 12.0, 3, 2
 
 
 def in_steps_of(fitter: Fitter, leader: Contender, contenders: Sequence[Contender], tell: OnPhase) -> list[Contender]:
@@ -102,13 +103,18 @@ def _equally_far(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase)
     costs = [fitter.again(c.fit).cost + c.step_credit for c in made if c.fit is not None]
     here = costs[order[0]]
     as_good = here + AS_GOOD * max(fitter.nominal()[1] - here, 0.0)
-    alike_kind = [len(c.names) == len(best.names) and cost < as_good for c, cost in zip(made, costs, strict=True)]
-    near = [k for k in order if scores[k] < open_to or alike_kind[k]]
+    explaining = [len(c.names) <= len(best.names) and cost < as_good for c, cost in zip(made, costs, strict=True)]
+    near = [k for k in order if scores[k] < open_to or explaining[k]]
     if len(near) == 1:
         return made
-    # Those first that could be named in the place of the best.
-    near.sort(key=lambda k: len(made[k].names) != len(best.names))
-    for n, k in enumerate(near[:_EQUALLY_FAR]):
-        tell("fitting those near the best as far", n, min(len(near), _EQUALLY_FAR))
+    # Pairs fit better, and must not take the places of what may be named instead of them; nor must what another's noise
+    # flatters.
+    pairs = [k for k in near if len(made[k].names) > 1][:_PAIRS_EQUALLY_FAR]
+    singles = sorted((k for k in near if len(made[k].names) == 1), key=lambda k: (k != order[0], costs[k]))
+    singles = singles[:_EQUALLY_FAR]
+    for n, k in enumerate([*pairs, *singles]):
+        tell("fitting those near the best as far", n, len(pairs) + len(singles))
+        if k in singles:
+            made[k] = nested(fitter, made[k], [c for c in made if len(c.names) > 1])
         made[k] = as_far(fitter, made[k], alike)
     return likeliest_first(made)

@@ -5,7 +5,7 @@ A second effect is added to a first, against the noise around that; or two are j
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations
 
@@ -13,15 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..effects.base import Effect
-from .contender import Contender, likeliest_first, of_fit
+from .contender import Contender, likeliest, likeliest_first, of_fit
 from .fit import Fitter
 from .hypothesis import Hypothesis
 from .least import least
-from .own_noise import by_itself
+from .own_noise import POLISH_POINTS, by_itself
 from .step_credit import step_credit
 from .thresholds import CLEAR
 
-__all__ = ["AS_GOOD", "Pairs", "firsts", "single_of"]
+__all__ = ["AS_GOOD", "Pairs", "firsts", "nested"]
 
 Floats = NDArray[np.float64]
 
@@ -183,28 +183,26 @@ def firsts(singles: Sequence[Contender]) -> list[Contender]:
     return [contender for contender in singles if contender.total <= near]
 
 
-def single_of(
-    fitter: Fitter, possible: Sequence[Hypothesis], pair: Contender, kind: type[Effect], evaluations: int
-) -> Contender:
-    """Return one effect of a pair, fitted from where it is within it, as a contender of its own, settled.
+def nested(fitter: Fitter, single: Contender, pairs: Iterable[Contender]) -> Contender:
+    """Fit an effect again from where it is in the best of some pairs: alone it must not have been fitted less far.
 
     Parameters
     ----------
     fitter
         Of the dataset.
-    possible
-        Every effect by itself.
-    pair
-        Two effects.
-    kind
-        One of them.
-    evaluations
-        Trial points of the fit at most.
+    single
+        One effect; it stays as it is where no pair has it that is clearly better.
+    pairs
+        Two effects each.
     """
+    better = [p for p in pairs if single.names[0] in p.names and p.total <= single.total - CLEAR]
+    if not better:
+        return single
+    pair = likeliest(better)
+    assert single.fit is not None
     assert pair.fit is not None
-    hypothesis = next(h for h in possible if h.kinds == (kind,))
-    mine = np.array([name == kind.name for name, _ in pair.fit.hypothesis.keys])
-    start = pair.point[mine]
+    hypothesis = single.fit.hypothesis
+    start = pair.point[[name == single.names[0] for name, _ in pair.fit.hypothesis.keys]]
     fitter.take_likeliest_noise(hypothesis.effects(start))
-    fit = fitter.fit(hypothesis, start, evaluations=evaluations)
-    return by_itself(fitter, of_fit(fitter, fit), evaluations=1)
+    fit = fitter.fit(hypothesis, start, evaluations=POLISH_POINTS)
+    return likeliest([single, by_itself(fitter, of_fit(fitter, fit), evaluations=1)])

@@ -23,8 +23,8 @@ from .counterpart import with_counterparts
 from .fit import Fitter
 from .hypothesis import SECOND, Hypothesis
 from .nearby import all_shaken, shaken
-from .own_noise import IDLE_POINTS, MOST_OWN, NEAR, OWN, POLISH_POINTS, again, by_itself, settled
-from .pairs import AS_GOOD, Pairs, firsts, single_of
+from .own_noise import IDLE_POINTS, MOST_OWN, NEAR, OWN, again, by_itself, settled
+from .pairs import AS_GOOD, Pairs, firsts, nested
 from .predictive import is_right, is_wanting
 from .thresholds import CLEAR, beyond_thresholds
 
@@ -134,7 +134,7 @@ class Search:
         if len(made[0].names) == 1:
             return made
         single = likeliest(contender for contender in made if len(contender.names) == 1)
-        return likeliest_first([self._nested(made[0], single), *(c for c in made if c is not single)])
+        return likeliest_first([nested(self.fitter, single, made[:1]), *(c for c in made if c is not single)])
 
     def _far_and_wide(self, nominal: Contender) -> list[Contender]:
         """Search over the whole ranges, add second effects, look for what does the same; the likeliest first."""
@@ -171,7 +171,7 @@ class Search:
         if not pairs:
             return list(singles)
         pairs = likeliest_first([shaken(self.fitter, pairs[0], self.seed, self.tell), *pairs[1:]])
-        return likeliest_first([self._nested(pairs[0], singles[0]), *singles[1:], *pairs])
+        return likeliest_first([nested(self.fitter, singles[0], pairs[:1]), *singles[1:], *pairs])
 
     def _far(self, singles: Sequence[Contender], refined: Collection[tuple[str, ...]]) -> list[Contender]:
         """Search far away for those that no local fit can be trusted with, but for those that were refined."""
@@ -205,14 +205,6 @@ class Search:
                 made[k] = by_itself(self.fitter, other, IDLE_POINTS)
                 self.fitter.take_likeliest_noise(best.effects)
         return likeliest_first(made)
-
-    def _nested(self, pair: Contender, single: Contender) -> Contender:
-        """Fit the best single effect again from where it is in a pair: alone it must not have been fitted less far."""
-        if single.names[0] not in pair.names or pair.total > single.total - CLEAR:
-            return single
-        assert single.fit is not None
-        (kind,) = single.fit.hypothesis.kinds
-        return likeliest([single, single_of(self.fitter, self.possible, pair, kind, POLISH_POINTS)])
 
     def _singles(self, nominal: Contender) -> list[Contender]:
         self.tell("first look at every effect", 0, 1)
