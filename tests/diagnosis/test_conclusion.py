@@ -8,16 +8,20 @@ import numpy as np
 import pytest
 
 from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.conclusion import concluded
-from tumblers.diagnosis.contender import of_fit, of_nominal
+from tumblers.diagnosis.conclusion import _equally_far, concluded
+from tumblers.diagnosis.contender import Contender, of_fit, of_nominal
 from tumblers.diagnosis.fit import Fitter
-from tumblers.diagnosis.own_noise import against_the_best, beside
+from tumblers.diagnosis.hypothesis import SECOND
+from tumblers.diagnosis.own_noise import against_the_best, beside, settled_at
 from tumblers.diagnosis.search import Search
 from tumblers.diagnosis.simulator import LONGEST_STEP_S, Simulator
 from tumblers.diagnosis.thresholds import CLEAR
 from tumblers.effects.friction_coefficient import FrictionCoefficient
+from tumblers.effects.size_error import SizeError
+from tumblers.effects.substrate_tilt import SubstrateTilt
+from tumblers.effects.viscous_drag import ViscousDrag
 
-from .lab import LYING, measure, plan, quiet, sliding_factor
+from .lab import LYING, coarse_lab, measure, plan, quiet, sliding_factor
 
 
 def test_the_leader_is_held_in_a_step_that_is_short_enough_for_it() -> None:
@@ -57,3 +61,32 @@ def test_what_says_the_same_as_the_best_is_held_against_its_noise() -> None:
     wronged = replace(best, cost=best.cost + 50.0)
     _, _, held = against_the_best(fitter, of_nominal(fitter), [best, wronged])
     assert held.total == pytest.approx(best.total, abs=1.0)
+
+
+def test_what_may_be_named_is_fitted_as_far_though_pairs_fit_better(monkeypatch: pytest.MonkeyPatch) -> None:
+    fitter = coarse_lab(SizeError(length_factor=1.1))
+    kinds = (SizeError, FrictionCoefficient, SubstrateTilt, ViscousDrag)
+    size, *others = Search(fitter, list(kinds), quiet, 0).possible
+    truth = (np.array(SizeError(length_factor=1.1).to_fit((1.1, 1.0))) - size.neutral) / size.scale
+    alone = settled_at(fitter, size, truth)
+    # Each better than the effect alone by more than a second effect has to be.
+    ahead = 2.0 * fitter.comparison.alike * SECOND + 10.0
+    pairs = [
+        settled_at(fitter, size + other, np.concatenate([truth, np.zeros(len(other.neutral))])) for other in others
+    ]
+    pairs = [replace(pair, cost=pair.cost + alone.total - pair.total - ahead) for pair in pairs]
+    far_off = [settled_at(fitter, other, np.zeros(len(other.neutral))) for other in others]
+    fitted: list[tuple[str, ...]] = []
+
+    def noted(_fitter: Fitter, contender: Contender, _alike: float) -> Contender:
+        fitted.append(contender.names)
+        return contender
+
+    monkeypatch.setattr("tumblers.diagnosis.conclusion.as_far", noted)
+    monkeypatch.setattr("tumblers.diagnosis.conclusion.nested", lambda _fitter, single, _pairs: single)
+    made = _equally_far(fitter, [*pairs, *far_off, alone], quiet)
+    assert made[0].names == pairs[0].names
+    assert ("size_error",) in fitted
+    # Neutral effects explain nothing.
+    assert not any(contender.names in fitted for contender in far_off)
+    assert sum(len(names) > 1 for names in fitted) == 2

@@ -13,8 +13,10 @@ from tumblers.diagnosis.comparison import Comparison, Residual
 from tumblers.diagnosis.contender import of_fit, of_nominal
 from tumblers.diagnosis.fit import Fitter
 from tumblers.diagnosis.hypothesis import Hypothesis
-from tumblers.diagnosis.pairs import Pairs, firsts
+from tumblers.diagnosis.own_noise import settled_at
+from tumblers.diagnosis.pairs import Pairs, firsts, nested
 from tumblers.diagnosis.simulator import Simulator
+from tumblers.diagnosis.thresholds import CLEAR
 from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.effects.size_error import SizeError
 
@@ -54,3 +56,23 @@ def test_a_first_of_a_pair_is_held_against_its_own_noise(monkeypatch: pytest.Mon
     for found, expected in zip(still.trials, own.trials, strict=True):
         assert_allclose(found, expected, rtol=1e-9, atol=1e-9)
     assert not np.allclose(still.over(fitter.trials), singles[0].residual.over(fitter.trials), rtol=1e-6)
+
+
+def test_an_effect_alone_is_fitted_as_far_as_in_a_pair() -> None:
+    fitter = coarse_lab(SizeError(length_factor=1.1))
+    size, friction = (
+        Hypothesis.of(kind, [fitter.comparison.simulator.nominal(i) for i in fitter.trials])
+        for kind in (SizeError, FrictionCoefficient)
+    )
+    there = (np.array(SizeError(length_factor=1.1).to_fit((1.1, 1.0))) - size.neutral) / size.scale
+    pair = settled_at(fitter, size + friction, np.concatenate([there, [0.0]]))
+    stopped = settled_at(fitter, size, 0.9 * there)
+    other = settled_at(fitter, friction, np.zeros(1))
+    assert pair.total < stopped.total - 2.0 * CLEAR
+    found = nested(fitter, stopped, [pair])
+    assert found.settled
+    assert found.total < pair.total + CLEAR
+    # What the pair has not, what it does better than by too little, and what is in no pair stays.
+    assert nested(fitter, other, [replace(pair, names=("size_error", "substrate_tilt"))]) is other
+    assert nested(fitter, found, [pair]) is found
+    assert nested(fitter, stopped, []) is stopped
