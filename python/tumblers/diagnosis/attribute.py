@@ -29,7 +29,7 @@ from ..progress import OnPhase
 from .comparison import Comparison
 from .conclusion import in_steps_of
 from .contender import Contender, of_fit, of_nominal
-from .fit import Fitter
+from .fit import Fit, Fitter
 from .hypothesis import SECOND
 from .occam import log_occam
 from .predictive import is_right
@@ -52,6 +52,8 @@ LAPSE = 0.12
 REFUSED = 0.02
 # Trial points of the last fit of the best, from where it is: intervals are no better than it.
 _LAST_POINTS = 12
+# Standard deviations to either end of a 90 % interval.
+_INTERVAL = 1.64
 # Of equals the one that the catalogue lists first is preferred.
 _PER_PLACE = 0.005
 
@@ -143,7 +145,7 @@ def attribute(
         right = _nominal_is_right(fitter)
         ranked, dispersion = _ranked(contenders, comparison, search.names, right)
     if right:
-        ranked = _with_tolerated(ranked, comparison)
+        ranked = _with_tolerated(ranked, comparison, dispersion)
     return seen_from_the_best(fitter, Attribution(tuple(ranked), dispersion, right))
 
 
@@ -168,14 +170,20 @@ def _nominal_is_right(fitter: Fitter) -> bool:
     return is_right(fitter.comparison, of_nominal(fitter).residual)
 
 
-def _with_tolerated(ranked: Sequence[Contender], comparison: Comparison) -> list[Contender]:
+def _with_tolerated(ranked: Sequence[Contender], comparison: Comparison, dispersion: float) -> list[Contender]:
     """Count what only says that nominal numbers are off within their tolerances as the nominal model."""
     scenarios = [comparison.simulator.nominal(i) for i in range(len(comparison.readers))]
-    same = [c for c in ranked if not c.names or is_tolerated(c.effects, scenarios)]
+    same = [c for c in ranked if c.fit is None or is_tolerated(_least(c.fit, dispersion), scenarios)]
     probability, evidence = sum(c.probability for c in same), max(c.log_evidence for c in same)
     made = [replace(c, probability=0.0) if c.names and c in same else c for c in ranked]
     made = [c if c.names else replace(c, probability=probability, log_evidence=evidence) for c in made]
     return sorted(made, key=lambda c: (-c.log_evidence, len(c.names)))
+
+
+def _least(fit: Fit, dispersion: float) -> tuple[Effect, ...]:
+    """Return the effects as near to neutral as their 90 % intervals go."""
+    deviation = np.sqrt(np.diag(fit.covariance(dispersion)))
+    return fit.hypothesis.effects(np.sign(fit.point) * np.maximum(np.abs(fit.point) - _INTERVAL * deviation, 0.0))
 
 
 def _seen(fitter: Fitter, contender: Contender, first: bool) -> Contender:
