@@ -1,0 +1,67 @@
+"""Effects that say what a nominal number's being off says too."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tumblers.diagnosis.attribute import _with_tolerated
+from tumblers.diagnosis.contender import of_fit, of_nominal
+from tumblers.diagnosis.hypothesis import Hypothesis
+from tumblers.diagnosis.tolerated import is_tolerated
+from tumblers.effects.base import Effect
+from tumblers.effects.electrostatic_force import ElectrostaticForce
+from tumblers.effects.magnetization_strength import MagnetizationStrength
+from tumblers.effects.size_error import SizeError
+from tumblers.effects.substrate_tilt import SubstrateTilt
+
+from .lab import coarse_lab, plan
+
+# Of moment and field together 0.707 %, of which three.
+MOMENT = 0.0212
+# A hundredth of the attraction by paper, three times.
+FORCE_N = 0.03 * plan().substrate.electrostatic_force_N
+
+
+@pytest.mark.parametrize(
+    ("effects", "tolerated"),
+    [
+        ((), False),
+        ((MagnetizationStrength(factor=1.0 - 0.99 * MOMENT),), True),
+        ((MagnetizationStrength(factor=1.0 - 1.01 * MOMENT),), False),
+        ((ElectrostaticForce(added_force_N=0.99 * FORCE_N),), True),
+        ((ElectrostaticForce(added_force_N=1.01 * FORCE_N),), False),
+        ((SizeError(length_factor=1.002, height_factor=1.002),), True),
+        ((SizeError(length_factor=1.002, height_factor=1.004),), False),
+        ((SubstrateTilt(slope_x_deg=1e-3),), False),
+        ((SubstrateTilt(slope_x_deg=1e-3), MagnetizationStrength(factor=1.001)), False),
+    ],
+)
+def test_within_three_standard_deviations_of_a_number(effects: tuple[Effect, ...], tolerated: bool) -> None:
+    fitter = coarse_lab()
+    assert is_tolerated(effects, [fitter.comparison.simulator.nominal(i) for i in fitter.trials]) == tolerated
+
+
+@pytest.mark.parametrize(("deviation", "tolerated"), [(0.2, False), (0.9, True)])
+def test_what_may_be_within_a_tolerance_is_the_nominal_model(deviation: float, tolerated: bool) -> None:
+    fitter = coarse_lab()
+    scenarios = [fitter.comparison.simulator.nominal(i) for i in fitter.trials]
+    hypothesis = Hypothesis.of(MagnetizationStrength, scenarios)
+    # Off by one and a half tolerances; its interval, in shares of the tolerance, reaches into it or does not.
+    off = 1.0 + 1.5 * MOMENT
+    (low,), (high,) = (
+        (np.array(MagnetizationStrength.to_fit((factor,))) - hypothesis.neutral) / hypothesis.scale
+        for factor in (off, off + deviation * MOMENT)
+    )
+    fit = fitter.fit(hypothesis, np.array([low]), evaluations=1)
+    fit = replace(fit, point=np.array([low]), jacobian=np.full((1, 1), 1.0 / (high - low)))
+    effect = replace(of_fit(fitter, fit), log_evidence=5.0, probability=0.9)
+    nominal = replace(of_nominal(fitter), probability=0.1)
+    first, second = _with_tolerated([effect, nominal], fitter.comparison, 1.0)
+    if tolerated:
+        assert (first.names, first.probability, first.log_evidence) == ((), 1.0, 5.0)
+        assert second.probability == 0.0
+    else:
+        assert (first, second.probability) == (effect, 0.1)
