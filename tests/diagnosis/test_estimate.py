@@ -128,8 +128,8 @@ def test_an_interval_ends_where_the_objective_stays_up(rise: Callable[[float], f
 
 def test_a_factor_is_known_no_better_than_the_nominal_number_that_it_multiplies() -> None:
     scenario = Simulator(plan()).nominal(0)
-    both = hypot(TOLERANCES["magnetization"], TOLERANCES["field strength"])
-    assert least_deviation("magnetization_strength", "factor", 0.8, [scenario]) == pytest.approx(0.8 * both)
+    together = hypot(*(TOLERANCES[name] for name in ("magnetization", "field strength", "mass")))
+    assert least_deviation("magnetization_strength", "factor", 0.8, [scenario]) == pytest.approx(0.8 * together)
     assert least_deviation("friction_coefficient", "factor", 0.5, [scenario]) == pytest.approx(
         0.5 * TOLERANCES["friction coefficient"]
     )
@@ -142,5 +142,5 @@ def test_a_factor_is_known_no_better_than_the_nominal_number_that_it_multiplies(
     found = diagnose(measure(plan(), (MagnetizationStrength(factor=0.8),)), effects=["magnetization_strength"])
     (effect,) = found.effects
     factor = effect.parameters["factor"]
-    assert factor.low <= factor.estimate - 1.6 * 0.8 * both
-    assert factor.high >= factor.estimate + 1.6 * 0.8 * both
+    assert factor.low <= factor.estimate - 1.6 * 0.8 * together
+    assert factor.high >= factor.estimate + 1.6 * 0.8 * together

@@ -19,8 +19,8 @@ from tumblers.effects.substrate_tilt import SubstrateTilt
 
 from .lab import coarse_lab, plan
 
-# Of moment and field together 0.707 %, of which three.
-MOMENT = 0.0212
+# Of moment, field and weight together 0.866 %, of which three.
+MOMENT = 0.02598
 # A hundredth of the attraction by paper, three times.
 FORCE_N = 0.03 * plan().substrate.electrostatic_force_N
 

@@ -21,8 +21,8 @@ _FACTORS: Mapping[str, Mapping[str, str]] = {
     "size_error": {"length_factor": "length", "height_factor": "height"},
 }
 _FORCE = "electrostatic_force"
-# Of a torque m × B nobody knows whether the moment or the field is off.
-_SAME: Mapping[str, tuple[str, ...]] = {"magnetization": ("field strength",)}
+# Of a torque m × B nobody knows whether the moment or the field is off, nor of what it lifts whether the weight is.
+_SAME: Mapping[str, tuple[str, ...]] = {"magnetization": ("field strength", "mass")}
 
 
 def is_tolerated(effects: Sequence[Effect], scenarios: Sequence[Scenario]) -> bool:
