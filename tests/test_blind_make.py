@@ -173,20 +173,21 @@ def test_strength_takes_out_what_the_nominal_numbers_may_be_off() -> None:
         scenarios = [world_scenario(lab, plan, other) for plan in lab.plans]
         return [watch(s, (), f, solver="reduced") for s, f in zip(scenarios, frames, strict=True)]
 
-    plain, each = seen(jitter), jitter.each_moved()
+    plain, each = seen(jitter), jitter.each_raised()
     assert len(each) == 6 + len(jitter.dimensions)
     moved = [seen(other) for other in each]
-    # The first length, by one and a half of its standard deviation and by ten: two are taken out.
+    # The first length, by its standard deviation and by ten: one is taken out, and what the others do of it.
     first, *others = jitter.dimensions
-
-    def longer(deviations: float) -> list[Scene]:
-        return seen(replace(jitter, dimensions=(first * (1.0 + deviations * DIMENSIONS), *others)))
-
-    little, much = longer(1.5), longer(10.0)
-    # What is left is the bend between one deviation and one and a half.
-    assert strength(lab, little, plain, moved).sigma < 0.4 * strength(lab, little, plain).sigma
-    whole, left = strength(lab, much, plain).sigma, strength(lab, much, plain, moved).sigma
-    assert 0.0 < left < whole
+    assert each[6] == replace(jitter, dimensions=(first * (1.0 + DIMENSIONS), *others))
+    assert strength(lab, moved[6], plain).sigma > 0.1
+    assert strength(lab, moved[6], plain, moved).sigma < 1e-6
+    much = seen(replace(jitter, dimensions=(first * (1.0 + 10.0 * DIMENSIONS), *others)))
+    whole, left = strength(lab, much, plain), strength(lab, much, plain, moved)
+    assert 0.5 * whole.sigma < left.sigma < 0.95 * whole.sigma
+    # What is taken out of one trial does not appear in another.
+    bare = strength(lab, [much[0], *plain[1:]], plain, moved).by_trial
+    assert bare[0] > 1.0
+    assert max(bare[1:]) == 0.0
 
 
 def _moved(poses, by_m):  # type: ignore[no-untyped-def]

@@ -277,6 +277,7 @@ def compare(
     local_sigmas: list[list[float]],
     shared: tuple[list[float], list[float], list[float]],
     train: list[bool],
+    outcome_weight: float = 1.0,
     held: list[float] | None = None,
     fit: bool = True,
     threads: int = 0,
@@ -285,7 +286,8 @@ def compare(
     the whitened differences.
 
     Bounds and standard deviations of clock and origin are by trial, (trials, 3); of what all share, least, most and
-    standard deviations. What all share is fitted from the trials of `train`.
+    standard deviations. What all share is fitted from the trials of `train`, an outcome having the weight of
+    `outcome_weight` numbers of a track.
     """
 
 @final

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from tumblers.dataset import Outcome
+from tumblers.dataset import Dataset, Outcome
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.fit import Fitter, _Descent
 from tumblers.diagnosis.loss import FAR, HUBER, huber, robust_cost
@@ -30,11 +30,15 @@ def test_a_trial_that_no_model_can_follow_counts_by_its_logarithm() -> None:
     assert comparison.weight(0, residual.trials[0]) == pytest.approx(1.0 / (1.0 + 9.0 / FAR))
 
 
-def test_an_outcome_counts_for_as_many_numbers_of_a_track_as_speak_for_one() -> None:
+def with_a_speed() -> Dataset:
+    """Return a track with an outcome beside it."""
     dataset = measure(plan(PLANS[:1]), seed=2)
     speed = Outcome(mean_speed_m_per_s=6e-3, sigma_m_per_s=1e-3)
-    dataset = replace(dataset, trials=(replace(dataset.trials[0], outcome=speed),))
-    comparison = Comparison(dataset, Simulator(dataset))
+    return replace(dataset, trials=(replace(dataset.trials[0], outcome=speed),))
+
+
+def test_an_outcome_counts_for_as_many_numbers_of_a_track_as_speak_for_one() -> None:
+    comparison = Comparison(with_a_speed(), Simulator(with_a_speed()))
     fitter, residual = Fitter(comparison), comparison.residual(comparison.nominal_paths)
     assert comparison.alike > 2.0
     values = residual.trials[0]
@@ -48,17 +52,26 @@ def test_an_outcome_counts_for_as_many_numbers_of_a_track_as_speak_for_one() -> 
 
 
 def test_least_squares_see_the_loss_of_the_objective() -> None:
-    dataset = measure(plan(PLANS[:2]), (MagnetizationStrength(factor=0.9),))
-    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
+    comparison = Comparison(with_a_speed(), Simulator(with_a_speed()))
+    fitter = Fitter(comparison)
     (hypothesis,) = Search(fitter, [MagnetizationStrength], quiet, 0).possible
     descent = _Descent(fitter, hypothesis, np.array([0.05]), fitter.trials, 1.0)
     # Differences of a track and of an outcome on either side of Huber's limit, weighed as in the rows.
-    size = np.geomspace(0.1, 30.0, len(descent.limits))
-    rows = size * descent.limits / HUBER
+    count, alike = comparison.floors[0].tracked, comparison.alike
+    weights = np.ones(len(descent.limits))
+    weights[count] = np.sqrt(alike)
+    size = np.geomspace(0.1, 30.0, len(weights))
+    rows = size * weights
     value, slope, bend = descent.loss(rows**2)
-    assert value == pytest.approx(huber(size) * (descent.limits / HUBER) ** 2, rel=1e-9)
+    assert value == pytest.approx(huber(size) * weights**2, rel=1e-9)
+    residual = comparison.residual(comparison.nominal_paths)
+    for off in (1.0, 9.0):
+        residual.trials[0][:] = np.append(np.zeros(count), off)
+        squares = np.zeros(len(weights))
+        squares[count] = alike * off**2
+        assert descent.loss(squares)[0].sum() == pytest.approx(fitter.trial_cost(residual, 0), rel=1e-9)
     # Away from the limit, where the bend jumps.
-    smooth = np.abs(size / HUBER - 1.0) > 1e-2
+    smooth = np.abs(size / HUBER - 1.0) > 2e-2
     h = 1e-5 * rows**2
     up, down = descent.loss(rows**2 + h), descent.loss(rows**2 - h)
     assert slope[smooth] == pytest.approx(((up[0] - down[0]) / (2.0 * h))[smooth], rel=1e-6)

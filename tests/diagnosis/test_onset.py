@@ -12,7 +12,7 @@ from tumblers.blind.world import watch
 from tumblers.dataset import Dataset, Track
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.localise import localise
-from tumblers.diagnosis.onset import _shared, begins_at_place, begins_at_time
+from tumblers.diagnosis.onset import _evidence, _shared, begins_at_place, begins_at_time
 from tumblers.diagnosis.result import Region
 from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects import get
@@ -74,8 +74,28 @@ def test_one_trial_alone_cannot_tell_a_place_from_a_time() -> None:
     one, two = np.array([[1.0, 0.0], [20.0, 0.0]]), np.array([[1.0, 0.0], [20.0, 5.0]])
     assert _shared(one) is None
     assert _shared(two) == 1
-    # A region of its own would suit the second better.
-    assert _shared(np.array([[0.0, 25.0], [20.0, 5.0]])) is None
+    # Each had rather a region of its own than the one that suits both; the second that shares it speaks for it too.
+    assert _shared(np.array([[0.0, 30.0], [30.0, 0.0], [16.0, 16.0]])) is None
+    assert _shared(np.array([[0.0, 18.0], [18.0, 0.0], [16.0, 16.0]])) == 2
+
+
+@pytest.mark.parametrize("alike", [1.0, 2.0, 8.0])
+def test_white_noise_shares_no_region_however_few_numbers_count_as_one(alike: float) -> None:
+    rng = np.random.default_rng(5)
+    trials, channels, numbers, regions = 12, 5, 60, 60
+    told = 0
+    for _ in range(10):
+        square = rng.normal(size=(trials, channels, numbers)) ** 2
+        each = np.zeros((trials, numbers, 4, channels))
+        for step in range(4):
+            each[:, :, step] = (np.searchsorted([1.0, 4.0, 9.0], square, side="right") == step).swapaxes(1, 2)
+        up_to = np.concatenate([np.zeros((trials, 1, 4, channels)), np.cumsum(each, axis=1)], axis=1)
+        evidence = np.empty((regions - 1, trials))
+        for start in range(1, regions):
+            before, after = up_to[:, start], up_to[:, -1] - up_to[:, start]
+            evidence[start - 1] = _evidence(before, after, np.zeros_like(after)) / alike
+        told += _shared(evidence) is not None
+    assert told == 0
 
 
 def test_a_sticky_place_is_found_where_it_is_and_not_where_the_robot_came_late_from_it() -> None:

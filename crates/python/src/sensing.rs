@@ -89,7 +89,9 @@ impl PyMeasured {
 }
 
 #[pyfunction]
-#[pyo3(signature = (trials, runs, local_bounds, local_sigmas, shared, train, held=None, fit=true, threads=0))]
+#[pyo3(signature = (
+    trials, runs, local_bounds, local_sigmas, shared, train, outcome_weight=1.0, held=None, fit=true, threads=0
+))]
 #[allow(clippy::too_many_arguments)] // keywords of one Python call
 pub fn compare<'py>(
     py: Python<'py>,
@@ -99,6 +101,7 @@ pub fn compare<'py>(
     local_sigmas: Vec<[f64; 3]>,
     shared: (Vec<f64>, Vec<f64>, Vec<f64>),
     train: Vec<bool>,
+    outcome_weight: f64,
     held: Option<Vec<f64>>,
     fit: bool,
     threads: usize,
@@ -116,8 +119,10 @@ pub fn compare<'py>(
             let most = (measured.len() * seen.len()).max(1);
             let threads = if threads == 0 { available_parallelism().map_or(1, usize::from) } else { threads }.min(most);
             let pool = ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| error.to_string())?;
-            pool.install(|| ::sensing::compare(&measured, &seen, &tolerances, &train, held.as_deref(), fit))
-                .map_err(|error| error.to_string())
+            pool.install(|| {
+                ::sensing::compare(&measured, &seen, &tolerances, &train, outcome_weight, held.as_deref(), fit)
+            })
+            .map_err(|error| error.to_string())
         })
         .map_err(refused)?;
     compared

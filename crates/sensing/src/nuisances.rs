@@ -3,12 +3,13 @@
 //! They minimise
 //!
 //! ```text
-//! Σ_t w_t |W (y - m(τ, o, ψ, s)) - D η|² + Σ (τ/σ_τ)² + |o/σ_o|² + (ψ/σ_ψ)² + (s/σ_s)² + |η|²
+//! Σ_t w_t |W (y - m(τ, o, ψ, s)) - D η|² + n_c |outcomes - D η|² + Σ (τ/σ_τ)² + |o/σ_o|² + (ψ/σ_ψ)² + (s/σ_s)² + |η|²
 //! ```
 //!
 //! within their tolerances, by Gauss and Newton's method: the clock `τ` and the origin `o` of each trial for itself, the
 //! camera's heading `ψ` and scale `s` and the nominal numbers' being off (`η`, in their tolerances) over all trials that
-//! count. A trial that the paths are far from counts less, `w_t = 1/(1 + mean square/κ)`.
+//! count. A trial that the paths are far from counts less, `w_t = 1/(1 + mean square/κ)`; an outcome counts as `n_c` numbers
+//! of a track.
 
 use crate::bounded::{Block, least};
 use crate::loss::{huber, weight};
@@ -50,6 +51,7 @@ pub(crate) struct Problem<'a> {
     pub run: &'a [Seen<'a>],
     pub tolerances: &'a Tolerances,
     pub train: &'a [bool],
+    pub outcome_weight: f64,
     pub held: bool,
 }
 
@@ -158,7 +160,11 @@ impl Problem<'_> {
         }
         // One trial that the model cannot follow must not turn the camera of all.
         let lost = rows.column(wrong).iter().take(trial.tracked()).map(|r| huber(*r)).sum();
-        weight(lost, trial.whole()) * squared(&rows)
+        let followed = weight(lost, trial.whole());
+        for r in trial.tracked()..linear.len() {
+            rows.row_mut(r).scale_mut((self.outcome_weight / followed).sqrt());
+        }
+        followed * squared(&rows)
     }
 }
 

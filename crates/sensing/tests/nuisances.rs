@@ -96,7 +96,7 @@ proptest! {
         let camera = Camera::new(heading, scale);
         let trials = paths.map(|path| measured(&path, [clock, x, y], &camera, quaternions));
         let run = || paths.map(|path| Seen { path: Some(path), outcomes: Vec::new() }).to_vec();
-        let all = compare(&[&trials[0], &trials[1]], &[run(), run()], &tolerances(2), &[true; 2], None, true).unwrap();
+        let all = compare(&[&trials[0], &trials[1]], &[run(), run()], &tolerances(2), &[true; 2], 1.0, None, true).unwrap();
         prop_assert_eq!(&all[0], &all[1]);
         let found = &all[0];
         // Nothing is noisy here: what is left is what the priors hold back, in 400 draws at most half of these bounds.
@@ -113,14 +113,30 @@ proptest! {
 }
 
 #[test]
+fn an_outcome_has_the_weight_of_so_many_numbers() {
+    // What is measured is 3 off, and a nominal number's being off moves it by 1: η = 3 w/(w + 1).
+    let rows = poses(0.2);
+    let path = Path::new(INTERVAL, 0.0, &rows).unwrap();
+    let trial = Measured::new(Vec::new(), vec![1.0], 1, 1, 0).unwrap();
+    let run = || vec![Seen { path: Some(path), outcomes: vec![[3.0, 0.0]] }];
+    for weight in [1.0, 8.0] {
+        let found = compare(&[&trial], &[run()], &tolerances(1), &[true], weight, None, true).unwrap();
+        let off = found[0].nuisances.shared[2];
+        assert!((off - 3.0 * weight / (weight + 1.0)).abs() < 1e-9, "{off}");
+    }
+    assert!(compare(&[&trial], &[run()], &tolerances(1), &[true], 0.0, None, true).is_err());
+}
+
+#[test]
 fn a_trial_that_was_not_run_has_no_differences_and_moves_no_other() {
     let rows = poses(0.2);
     let path = Path::new(INTERVAL, 0.0, &rows).unwrap();
     let trial = measured(&path, [2e-3, 1e-5, 0.0], &Camera::new(0.02, 2e-3), false);
     let ran = || Seen { path: Some(path), outcomes: Vec::new() };
     let missing = || Seen { path: None, outcomes: Vec::new() };
-    let alone = compare(&[&trial], &[vec![ran()]], &tolerances(1), &[true], None, true).unwrap();
-    let beside = compare(&[&trial, &trial], &[vec![ran(), missing()]], &tolerances(2), &[true; 2], None, true).unwrap();
+    let alone = compare(&[&trial], &[vec![ran()]], &tolerances(1), &[true], 1.0, None, true).unwrap();
+    let beside =
+        compare(&[&trial, &trial], &[vec![ran(), missing()]], &tolerances(2), &[true; 2], 1.0, None, true).unwrap();
     assert_eq!(beside[0].wrong[1], None);
     assert_eq!(beside[0].wrong[0], alone[0].wrong[0]);
     assert_eq!(beside[0].nuisances.shared, alone[0].nuisances.shared);
@@ -135,10 +151,10 @@ fn what_does_not_belong_together_is_refused() {
     let path = Path::new(INTERVAL, 0.0, &rows).unwrap();
     let trial = measured(&path, [0.0; 3], &Camera::new(0.0, 0.0), false);
     let run = vec![Seen { path: Some(path), outcomes: vec![[1.0, 0.0]] }];
-    let error = compare(&[&trial], &[run], &tolerances(1), &[true], None, true).unwrap_err();
+    let error = compare(&[&trial], &[run], &tolerances(1), &[true], 1.0, None, true).unwrap_err();
     assert_eq!(error.to_string(), "outcomes: 1 found, 0 expected");
-    assert!(compare(&[&trial], &[], &tolerances(2), &[true], None, true).is_err());
+    assert!(compare(&[&trial], &[], &tolerances(2), &[true], 1.0, None, true).is_err());
     let mut negative = tolerances(1);
     negative.local_bounds[0][0] = -1e-3;
-    assert!(compare(&[&trial], &[], &negative, &[true], None, true).is_err());
+    assert!(compare(&[&trial], &[], &negative, &[true], 1.0, None, true).is_err());
 }

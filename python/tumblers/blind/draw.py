@@ -79,7 +79,8 @@ class _World:
         try:
             scenes = self.scenes(laws)
             shown, stepped = strength(self.lab, scenes, self.plain, self.moved), self.scenes(laws, finer=_FINER)
-            return strength(self.lab, stepped, scenes).sigma <= max(QUIET_SIGMA, REPEATS * shown.sigma)
+            change = strength(self.lab, stepped, scenes, self.moved)
+            return change.sigma <= max(QUIET_SIGMA, REPEATS * shown.sigma)
         except (ArithmeticError, InputError):
             return False
 
@@ -165,7 +166,10 @@ def _draw_world(rng: np.random.Generator) -> _World | None:
         shown = jitter_strength(lab, jitter)
         if shown.sigma <= QUIET_SIGMA and max(shown.by_trial) <= QUIET_TRIAL_SIGMA:
             bare = _World(lab, jitter, (), (), shown.sigma)
-            moved = [tuple(replace(bare, jitter=other).scenes(())) for other in jitter.each_moved()]
+            try:
+                moved = [tuple(replace(bare, jitter=other).scenes(())) for other in jitter.each_raised()]
+            except (ArithmeticError, InputError):
+                continue
             return replace(bare, plain=tuple(bare.scenes(())), moved=tuple(moved))
     return None
 
@@ -228,11 +232,15 @@ def _as_filmed(lab: Lab, shown: Strength, axis: str, region: tuple[float, float]
     if axis == "time_s":
         return low, min(high, max(plan.duration_s for plan in lab.plans))
     if axis == "cycle_phase_deg":
-        # In the trial that shows the cause most.
-        clear = max(zip(shown.by_trial, lab.plans, strict=True), key=lambda pair: pair[0])[1]
-        if isinstance(clear.field, RotatingField):
-            half = 180.0 * clear.field.frequency_Hz / lab.frames_per_second
-            return low - half, high + half
+        # Of the film that shows the cause most.
+        films = [
+            (shows, plan.field.frequency_Hz)
+            for shows, plan in zip(shown.by_trial, lab.plans, strict=True)
+            if plan.tracked and isinstance(plan.field, RotatingField)
+        ]
+        frame = 360.0 * max(films)[1] / lab.frames_per_second if films else 0.0
+        more = 0.5 * max(frame - (high - low), 0.0)
+        return low - more, high + more
     return region
 
 

@@ -59,8 +59,8 @@ class Jitter:
         """Return the factors that `table` has by name; 1 for those that are left out."""
         return cls(**{**table, "dimensions": tuple(table.get("dimensions", ()))})
 
-    def each_moved(self) -> list[Jitter]:
-        """Return the factors with one number after another farther off by its standard deviation."""
+    def each_raised(self) -> list[Jitter]:
+        """Return the factors with one number after another raised by its standard deviation."""
         names = [f.name for f in fields(self) if f.name != "dimensions"]
         made = [replace(self, **{name: getattr(self, name) * (1.0 + NUMBERS)}) for name in names]
         for i, length in enumerate(self.dimensions):

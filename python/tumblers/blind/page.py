@@ -37,7 +37,7 @@ def page_of(scores: Scores) -> str:
         "tumblers blind score DIR --answers DIR/answers.json --page blind-results.md\n```",
         "The strength of a cause is the root mean square of what it changes in all numbers that were observed, in "
         "standard deviations of their noise, after the sensor's stated tolerances (origin, clock, heading, scale) and "
-        "two standard deviations of each nominal number have taken what they can: what is less is no gap.",
+        "a standard deviation of each nominal number have taken what they can.",
         _jitter(),
         "Easier than a lab's data in these ways: a lab drops a trial in which the nominal numbers' being off and the "
         f"world's own step alone show by more than {STEADY_SIGMA:g} sigma; it is drawn again where they would move "

@@ -20,8 +20,8 @@ SIGMA_DEG = 1.0
 _SPEED_SHARE, _LEAST_SPEED = 0.01, 3e-5
 # A robot that climbs and one that does not are told apart with this many standard deviations.
 _CLIMB_SIGMA = 3.0
-# So many standard deviations of a nominal number are within its tolerance, as of an origin.
-_MOST_OFF = 2.0
+# So many standard deviations of each nominal number are taken out: of ten at once, as many as they are off together.
+_MOST_OFF = 1.0
 _ORIGIN, _CLOCK, _PER_TRIAL = 0, 2, 3
 
 
@@ -52,7 +52,8 @@ def strength(
     """Return how much the scenes differ from others of the same lab.
 
     Taken out, by bounded least squares, is what the sensor's stated tolerances allow: the origin and the clock of each
-    trial, the heading and the scale of the camera; and two standard deviations of the nominal numbers.
+    trial, the heading and the scale of the camera; and one standard deviation of each nominal number. A trial shows no
+    more than it does with nothing taken out: what is taken out of all must not appear where nothing was.
 
     Parameters
     ----------
@@ -83,7 +84,8 @@ def strength(
     q, r = np.linalg.qr(matrix)
     found = lsq_linear(r, q.T @ side, bounds=(-1.0, 1.0), method="bvls" if r.shape[0] == r.shape[1] else "trf").x
     rests = [s - b * bound @ found for b, s in zip(blocks, sides, strict=True)]
-    means = [float(np.mean(rest**2)) if rest.size else 0.0 for rest in rests]
+    each = zip(rests, sides, strict=True)
+    means = [min(float(np.mean(a**2)), float(np.mean(b**2))) if a.size else 0.0 for a, b in each]
     whole = np.concatenate(rests)
     return Strength(float(np.sqrt(np.mean(whole**2))), tuple(float(np.sqrt(mean)) for mean in means))
 

@@ -4,7 +4,7 @@ Every effect is fitted, then pairs by forward selection from the best. Hypothese
 
 ```text
 ln Z = -(cost + ln det Σ)/(2c) + ln Occam + ln prior,
-c = max(1, cost of the best / number of measurements) n_c
+c = max(1, cost of the best / numbers that were measured, an outcome as n_c) n_c
 ```
 
 with Σ the noise around each hypothesis, or around the best where it says the same (`own_noise`), and the prior
@@ -23,9 +23,11 @@ from math import log
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import lsq_linear
 
 from ..effects.base import Effect
 from ..progress import OnPhase
+from ..scenario import Scenario
 from .comparison import Comparison
 from .conclusion import in_steps_of
 from .contender import Contender, of_fit, of_nominal
@@ -34,7 +36,7 @@ from .hypothesis import SECOND
 from .occam import log_occam
 from .predictive import is_right
 from .search import Search
-from .tolerated import is_tolerated
+from .tolerated import is_tolerated, tolerated
 
 __all__ = ["LAPSE", "PRIOR", "REFUSED", "Attribution", "attribute", "seen_from_the_best"]
 
@@ -52,8 +54,9 @@ LAPSE = 0.12
 REFUSED = 0.02
 # Trial points of the last fit of the best, from where it is: intervals are no better than it.
 _LAST_POINTS = 12
-# Standard deviations to either end of a 90 % interval.
-_INTERVAL = 1.64
+# Standard deviations to either end of a 90 % interval, and ln of by how much a likelihood moves within it where motion
+# is rough.
+_INTERVAL, _ROUGH = 1.645, 3.0
 # Of equals the one that the catalogue lists first is preferred.
 _PER_PLACE = 0.005
 
@@ -145,7 +148,7 @@ def attribute(
         right = _nominal_is_right(fitter)
         ranked, dispersion = _ranked(contenders, comparison, search.names, right)
     if right:
-        ranked = _with_tolerated(ranked, comparison, dispersion)
+        ranked = _with_tolerated(fitter, ranked, dispersion)
     return seen_from_the_best(fitter, Attribution(tuple(ranked), dispersion, right))
 
 
@@ -170,20 +173,39 @@ def _nominal_is_right(fitter: Fitter) -> bool:
     return is_right(fitter.comparison, of_nominal(fitter).residual)
 
 
-def _with_tolerated(ranked: Sequence[Contender], comparison: Comparison, dispersion: float) -> list[Contender]:
-    """Count what only says that nominal numbers are off within their tolerances as the nominal model."""
-    scenarios = [comparison.simulator.nominal(i) for i in range(len(comparison.readers))]
-    same = [c for c in ranked if c.fit is None or is_tolerated(_least(c.fit, dispersion), scenarios)]
+def _with_tolerated(fitter: Fitter, ranked: Sequence[Contender], dispersion: float) -> list[Contender]:
+    """Count what says no more than that nominal numbers are off within their tolerances as the nominal model."""
+    scenarios = [fitter.comparison.simulator.nominal(i) for i in fitter.trials]
+    same = [c for c in ranked if c.fit is None or _may_be_tolerated(fitter, c.fit, scenarios, dispersion)]
     probability, evidence = sum(c.probability for c in same), max(c.log_evidence for c in same)
     made = [replace(c, probability=0.0) if c.names and c in same else c for c in ranked]
     made = [c if c.names else replace(c, probability=probability, log_evidence=evidence) for c in made]
     return sorted(made, key=lambda c: (-c.log_evidence, len(c.names)))
 
 
-def _least(fit: Fit, dispersion: float) -> tuple[Effect, ...]:
-    """Return the effects as near to neutral as their 90 % intervals go."""
-    deviation = np.sqrt(np.diag(fit.covariance(dispersion)))
-    return fit.hypothesis.effects(np.sign(fit.point) * np.maximum(np.abs(fit.point) - _INTERVAL * deviation, 0.0))
+def _may_be_tolerated(fitter: Fitter, fit: Fit, scenarios: Sequence[Scenario], dispersion: float) -> bool:
+    """Return whether a fit, or a point that the data allow as well, is within what nominal numbers may be off.
+
+    They allow a point within 90 % of Laplace's Gaussian where the objective is about as high as that foretells: past a
+    threshold the Gaussian knows nothing.
+    """
+    hypothesis = fit.hypothesis
+    if is_tolerated(hypothesis.effects(fit.point), scenarios):
+        return True
+    ends: list[tuple[float, float]] = []
+    for kind in hypothesis.kinds:
+        own = tolerated(kind, scenarios)
+        if own is None:
+            return False
+        ends += zip(*(kind.to_fit(values) for values in zip(*own, strict=True)), strict=True)
+    low, high = ((np.array(end) - hypothesis.neutral) / hypothesis.scale for end in zip(*ends, strict=True))
+    root = np.linalg.cholesky(fit.information(dispersion)).T
+    nearest = lsq_linear(root, root @ fit.point, bounds=(low, high)).x
+    if float(np.sum((root @ (nearest - fit.point)) ** 2)) > _INTERVAL**2:
+        return False
+    fitter.take_likeliest_noise(hypothesis.effects(fit.point))
+    there = fitter.residuals(hypothesis, [nearest])[0]
+    return fitter.cost(there, nearest) - fitter.again(fit).cost <= (_INTERVAL**2 + 2.0 * _ROUGH) * dispersion
 
 
 def _seen(fitter: Fitter, contender: Contender, first: bool) -> Contender:

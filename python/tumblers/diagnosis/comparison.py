@@ -98,7 +98,7 @@ class Comparison:
         self._known: dict[tuple[Effect, ...], list[Sensitivity]]
         self._nominal_log_determinant: float
         self._start()
-        self.nuisances = NuisanceFit(dataset.sensor, self.readers, simulator.threads)
+        self.nuisances = NuisanceFit(dataset.sensor, self.readers, self.alike, simulator.threads)
         # A floor serves many comparisons: its native half is made once, and goes with it.
         self._natives: WeakKeyDictionary[Floor, _core.Measured] = WeakKeyDictionary()
 

@@ -14,7 +14,7 @@ from ..progress import OnPhase
 from .contender import Contender, likeliest_first, of_nominal
 from .fit import Fitter
 from .hypothesis import SECOND
-from .own_noise import MOST_OWN, OWN, again, against_the_best, each_by_itself, settled
+from .own_noise import MOST_OWN, OWN, again, against_the_best, by_itself, each_by_itself, settled
 from .pairs import AS_GOOD, nested
 from .sparse import as_far
 
@@ -115,6 +115,7 @@ def _equally_far(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase)
     for n, k in enumerate([*pairs, *singles]):
         tell("fitting those near the best as far", n, len(pairs) + len(singles))
         if k in singles:
-            made[k] = nested(fitter, made[k], [c for c in made if len(c.names) > 1])
+            alone = made[k] if made[k].settled else by_itself(fitter, made[k], evaluations=1)
+            made[k] = nested(fitter, alone, [c for c in made if len(c.names) > 1])
         made[k] = as_far(fitter, made[k], alike)
     return likeliest_first(made)

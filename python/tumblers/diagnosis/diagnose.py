@@ -275,8 +275,8 @@ class _Conclusion:
             if len(contender.names) != 1 or contender.names[0] in named or odds < _RULED_OUT:
                 continue
             against = [
-                robust_cost(theirs) - robust_cost(ours)
-                for theirs, ours in zip(contender.residual.trials, chosen.residual.trials, strict=True)
+                self.fitter.trial_cost(contender.residual, i) - self.fitter.trial_cost(chosen.residual, i)
+                for i in self.fitter.trials
             ]
             worst = int(np.argmax(against))
             if against[worst] > 0.0:
@@ -316,7 +316,7 @@ def _weight(dispersion: float) -> str:
     return (
         "Every measured number counts for itself"
         if written == "1"
-        else f"Every {written} measured numbers count as one"
+        else f"Every {written} measured numbers of a track count as one"
     )
 
 
@@ -347,7 +347,7 @@ def _assumptions(comparison: Comparison, attribution: Attribution) -> tuple[str,
         f"{_weight(attribution.dispersion)} in probabilities and intervals.",
         f"Tried were {', '.join(tried)}." if tried else "No effect that was tried can be at work in these trials.",
         f"However strong the evidence, {100.0 * LAPSE:.0f} % of the probability belongs to all hypotheses alike; what "
-        "only says that nominal numbers are off within their tolerances gives its own to the nominal model.",
+        "may only say that nominal numbers are off within their tolerances gives its own to the nominal model.",
         f"Before anything is fitted, {100.0 * PRIOR[0]:g} % for no gap, {100.0 * PRIOR[1]:g} % for one effect (half of "
         "it where one alone is tried), "
         f"{100.0 * PRIOR[2]:g} % for two; no more than two are tried. A nominal model that fails the predictive test "

@@ -3,13 +3,14 @@
 They minimise
 
 ```text
-Σ_t w_t |W (y - m(τ, o, ψ, s)) - D η|² + Σ (τ/σ_τ)² + |o/σ_o|² + (ψ/σ_ψ)² + (s/σ_s)² + |η|²
+Σ_t w_t |W (y - m(τ, o, ψ, s)) - D η|² + n_c |outcomes - D η|² + Σ (τ/σ_τ)² + |o/σ_o|² + (ψ/σ_ψ)² + (s/σ_s)² + |η|²
 ```
 
 within the sensor's tolerances, by Gauss and Newton's method: the clock and the origin of each trial for itself, the
 camera's heading and scale and the nominal numbers' being off (η, in their tolerances; D in `Floor.tolerance`) over all
-trials that count. A trial t that the paths are far from counts less, `w_t` = 1/(1 + mean square/κ). What remains
-depends on the hypothesis alone. It is native (`crates/sensing`).
+trials that count. A trial t that the paths are far from counts less, `w_t` = 1/(1 + mean square/κ); an outcome counts
+as n_c numbers of a track (`Comparison.alike`). What remains depends on the hypothesis alone. It is native
+(`crates/sensing`).
 """
 
 from __future__ import annotations
@@ -74,6 +75,8 @@ class NuisanceFit:
         With its tolerances.
     readers
         By trial.
+    outcome_weight
+        For how many numbers of a track an outcome counts.
     threads
         Of a batch, all if 0. The results do not depend on it.
 
@@ -91,8 +94,10 @@ class NuisanceFit:
         Standard deviations of the same.
     """
 
-    def __init__(self, sensor: Sensor, readers: Sequence[Reader], threads: int = 0) -> None:
-        self.threads = threads
+    def __init__(
+        self, sensor: Sensor, readers: Sequence[Reader], outcome_weight: float = 1.0, threads: int = 0
+    ) -> None:
+        self.outcome_weight, self.threads = outcome_weight, threads
         self.tracked = np.array([len(reader.observed.time_s) > 0 for reader in readers], dtype=np.bool_)
         self.local_bounds = np.empty((len(readers), 3))
         for i, reader in enumerate(readers):
@@ -191,6 +196,7 @@ class NuisanceFit:
                 self.local_sigmas.tolist(),
                 (*(bound.tolist() for bound in self.shared_bounds), self.shared_sigmas.tolist()),
                 [i in counted for i in range(len(stretches))],
+                self.outcome_weight,
                 held=None if tolerance is None else tolerance.tolist(),
                 fit=fit,
                 threads=self.threads,

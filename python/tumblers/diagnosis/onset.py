@@ -2,7 +2,7 @@
 
 How far off numbers are is counted in steps of one standard deviation, so that none decides alone; in x, y and heading,
 which stay off once they are, what counts is by how much each is off from those just before. A region S of time or place
-is held against a cause that acts all along. Of a channel of a trial, k_j numbers are off by step j before the trial
+is held against a cause that acts all along. Of a channel of a trial, k_j numbers fall into step j before the trial
 comes to S, k'_j in S, and k''_j after it:
 
 ```text
@@ -14,11 +14,10 @@ a is how many neighbouring numbers count as one. What comes after S need not be 
 off its course. The first half of a cycle does not count, for until then no cause has had its turn, nor does a trial
 whose field does not rotate.
 
-The likeliest S of the n that were looked at is told where it is three standard deviations clear, over all of them, and
-more of what is gained lies in it than of the numbers, and where two trials or more speak for it and few had rather a
-region of their own, at ln n each: what a cause that acts all along adds up to shows in each trial at another time and
-place. The free variances of many channels reach the first of these bounds by chance; it is with the last that noise
-tells nothing.
+The likeliest S is told where it is three standard deviations clear, over all that were looked at, where more of what is
+gained lies in it than of the numbers, and where two trials or more speak for it and few had rather a region of their
+own: what a cause that acts all along adds up to shows in each trial at another time and place. The free variances of
+many channels reach the first of these bounds by chance; it is with the last that noise tells nothing.
 """
 
 from __future__ import annotations
@@ -198,12 +197,11 @@ def _shared(evidence: Floats) -> int | None:
     evidence
         Λ of each region in each trial, shape (regions, trials).
     """
-    best, chosen = int(np.argmax(evidence.sum(axis=1))), log(len(evidence))
+    best = int(np.argmax(evidence.sum(axis=1)))
     if np.count_nonzero(evidence[best] > 0.0) < 2:
         return None
-    told = float(evidence[best].sum())
-    own = float(np.maximum(np.maximum(evidence.max(axis=0) - chosen, evidence[best]), 0.0).sum())
-    return best if told > _CLEAR + chosen and told >= _SHARED * own else None
+    told, own = float(evidence[best].sum()), float(np.maximum(evidence.max(axis=0), 0.0).sum())
+    return best if told > _CLEAR + log(len(evidence)) and told >= _SHARED * own else None
 
 
 def _measured_y(comparison: Comparison, residual: Residual, cells: Cells) -> Floats:

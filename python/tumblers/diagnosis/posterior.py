@@ -6,7 +6,7 @@ the parameters' ranges, and drawn with the weights `posterior/proposed` (samplin
 with c the dispersion and
 
 ```text
--2 ln posterior = (cost - outcomes - prior)/c + outcomes + prior
+-2 ln posterior = (cost - prior)/c + prior
 ```
 """
 

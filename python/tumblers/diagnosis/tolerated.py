@@ -9,7 +9,7 @@ from ..effects.base import Effect
 from ..scenario import Scenario
 from .floor import TOLERANCES
 
-__all__ = ["is_tolerated", "least_deviation"]
+__all__ = ["is_tolerated", "least_deviation", "tolerated"]
 
 # So many standard deviations may a nominal number be off.
 _MOST = 3.0
@@ -25,6 +25,28 @@ _FORCE = "electrostatic_force"
 _SAME: Mapping[str, tuple[str, ...]] = {"magnetization": ("field strength", "mass")}
 
 
+def tolerated(kind: type[Effect], scenarios: Sequence[Scenario]) -> tuple[tuple[float, float], ...] | None:
+    """Return between which values of each parameter an effect says what a nominal number may be off.
+
+    Three standard deviations of the number's tolerance either way; None for what no nominal number's being off does.
+
+    Parameters
+    ----------
+    kind
+        The effect.
+    scenarios
+        The nominal ones of all trials.
+    """
+    if kind.name == _FORCE:
+        most = _MOST * _force_deviation(scenarios)
+        return ((-most, most),) if most > 0.0 else None
+    numbers = _FACTORS.get(kind.name)
+    if numbers is None:
+        return None
+    shares = [_MOST * _share(numbers[p.key]) for p in kind.parameters]
+    return tuple((1.0 - share, 1.0 + share) for share in shares)
+
+
 def is_tolerated(effects: Sequence[Effect], scenarios: Sequence[Scenario]) -> bool:
     """Return whether each effect keeps a nominal number within three standard deviations of its tolerance.
 
@@ -35,18 +57,12 @@ def is_tolerated(effects: Sequence[Effect], scenarios: Sequence[Scenario]) -> bo
     scenarios
         The nominal ones of all trials.
     """
-    return bool(effects) and all(_within(effect, scenarios) for effect in effects)
 
+    def within(effect: Effect) -> bool:
+        ends = tolerated(type(effect), scenarios)
+        return ends is not None and all(a <= v <= b for v, (a, b) in zip(effect.vector(), ends, strict=True))
 
-def _within(effect: Effect, scenarios: Sequence[Scenario]) -> bool:
-    values = dict(zip((p.key for p in effect.parameters), effect.vector(), strict=True))
-    if effect.name == _FORCE:
-        (added,) = values.values()
-        return abs(added) <= _MOST * _force_deviation(scenarios)
-    numbers = _FACTORS.get(effect.name)
-    return numbers is not None and all(
-        abs(values[key] - 1.0) <= _MOST * _share(number) for key, number in numbers.items()
-    )
+    return bool(effects) and all(map(within, effects))
 
 
 def least_deviation(name: str, key: str, value: float, scenarios: Sequence[Scenario]) -> float:

@@ -90,6 +90,10 @@ def ties(comparison: Comparison, attribution: Attribution, chosen: Contender) ->
     """
     trials = range(len(comparison.readers))
     said = chosen.residual.over(trials)
+    # An outcome counts for itself; a trial that either is far from, as any other.
+    weights = np.concatenate(
+        [np.where(np.arange(floor.size) < floor.tracked, 1.0, comparison.alike) for floor in comparison.floors]
+    )
     limit = _TIED + (_ROUGH if any(floor.tracked for floor in comparison.floors) else 0.0)
     known = {frozenset(contender.names): contender for contender in attribution.contenders}
     out: dict[str, list[str]] = {}
@@ -102,7 +106,7 @@ def ties(comparison: Comparison, attribution: Attribution, chosen: Contender) ->
             if kept in known and not _does_as_much(other, chosen, known[kept]):
                 continue
             # What either would lose on average if the other were right.
-            apart = float(np.sum((other.residual.over(trials) - said) ** 2)) / (2.0 * attribution.dispersion)
+            apart = float(np.sum(weights * (other.residual.over(trials) - said) ** 2)) / (2.0 * attribution.dispersion)
             behind = chosen.log_likelihood - other.log_likelihood
             if min(chosen.log_evidence - other.log_evidence, behind, apart) < limit:
                 (instead,) = names - kept
