@@ -7,6 +7,7 @@ from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,14 +18,17 @@ from tumblers.blind import draw
 from tumblers.blind.answer import seal
 from tumblers.blind.commands import blind_app
 from tumblers.blind.jitter import DIMENSIONS, Jitter
+from tumblers.blind.lab import Plan
 from tumblers.blind.layout import draw_lab, world_scenario
 from tumblers.blind.make import make
 from tumblers.blind.records import read_records
 from tumblers.blind.repeat import REPEAT_FORMAT
 from tumblers.blind.schedule import task
-from tumblers.blind.strength import strength
+from tumblers.blind.strength import Strength, strength
 from tumblers.blind.world import Scene, watch
 from tumblers.effects.catalogue import CATALOGUE
+from tumblers.field import StaticField
+from tumblers.presets import drive
 
 # Worlds without an effect are quick to draw.
 SEED = next(seed for seed in range(1000) if [task(seed, i).kind for i in range(2)] == ["none", "none"])
@@ -210,6 +214,48 @@ def test_the_command_refuses_in_one_line(made: Path) -> None:
     assert str(done.exception).startswith("--only: found 7, expected numbers of datasets in")
     done = CliRunner().invoke(blind_app, ["score", str(made), "--answers", str(made / "dataset-000" / "seal.json")])
     assert "expected 'tumblers-answers/1'" in str(done.exception)
+
+
+@pytest.mark.parametrize(
+    ("axis", "region", "expected"),
+    [
+        ("time_s", (0.3, 10.0), (0.3, 2.0)),
+        ("position_y_m", (1e-3, 2e-3), (1e-3, 2e-3)),
+        # A frame of the 5 Hz film at 60 per second has 30 degrees; the outcome and the still field show nothing of it.
+        ("cycle_phase_deg", (100.0, 102.0), (86.0, 116.0)),
+        ("cycle_phase_deg", (100.0, 140.0), (100.0, 140.0)),
+    ],
+)
+def test_a_region_is_no_narrower_than_what_the_lab_films(
+    axis: str, region: tuple[float, float], expected: tuple[float, float]
+) -> None:
+    still = StaticField(strength_T=0.003, direction=(0.0, 0.0, 1.0))
+    plans = (
+        Plan(id="slow", field=drive(0.01, 1.0), duration_s=2.0),
+        Plan(id="fast", field=drive(0.01, 5.0), duration_s=1.0),
+        Plan(id="still", field=still, duration_s=1.0),
+        Plan(id="mean", field=drive(0.01, 8.0), duration_s=1.0, tracked=False, outcome="speed"),
+    )
+    lab = SimpleNamespace(plans=plans, frames_per_second=60.0)
+    shown = Strength(5.0, (1.0, 6.0, 9.0, 8.0))
+    assert draw._as_filmed(lab, shown, axis, region) == pytest.approx(expected)  # type: ignore[arg-type]
+
+
+def test_a_lab_whose_numbers_cannot_be_moved_is_drawn_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    seen: list[Jitter] = []
+    scenes = draw._World.scenes
+
+    def first_diverges(self: draw._World, *rest: Any) -> list[Scene]:
+        seen.append(self.jitter)
+        if len(seen) == 1:
+            raise ArithmeticError("diverged")
+        return scenes(self, *rest)
+
+    monkeypatch.setattr(draw._World, "scenes", first_diverges)
+    world = draw._draw_world(np.random.default_rng(3))
+    assert world is not None
+    assert len(world.moved) == len(world.jitter.each_raised())
+    assert world.jitter.mass != seen[0].mass
 
 
 @pytest.mark.parametrize(("shown", "count"), [((1.0, 9.0), None), ((9.0, 1.0), 2), ((9.0, 9.0), 2)])
