@@ -106,6 +106,21 @@ def test_between_what_evidence_ties_trials_left_out_decide(
         )
 
 
+def compared(tracked: int, alike: float = 1.0) -> SimpleNamespace:
+    """Return a comparison of one trial, of whose numbers so many are of a track and the others outcomes."""
+    return SimpleNamespace(readers=(None,), floors=(SimpleNamespace(tracked=tracked, size=COUNT),), alike=alike)
+
+
+@pytest.mark.parametrize("alike", [1.0, 8.0])
+def test_an_outcome_parts_as_much_as_it_counts(alike: float) -> None:
+    best = contender("substrate_tilt", 0.8, 0.8)
+    other = replace(contender("stray_field_gradient", 0.8, 0.1), log_likelihood=-20.0, log_evidence=-20.0)
+    # Of all numbers one outcome differs, by five standard deviations: 12.5 of likelihood, as it counts for itself.
+    other.residual.trials[0][-1] += 5.0
+    found = ties(compared(COUNT - 1, alike), Attribution((best, other), 8.0, False), best)  # type: ignore[arg-type]
+    assert found == {"substrate_tilt": () if alike == 8.0 else ("stray_field_gradient",)}
+
+
 @pytest.mark.parametrize(
     ("evidence", "behind", "sigmas", "tracked", "tied"),
     [
@@ -127,7 +142,7 @@ def test_what_is_about_as_likely_or_says_the_same_is_tied_however_parsimonious_t
     best = contender("substrate_tilt", 0.8, 0.8)
     other = replace(contender("stray_field_gradient", sigmas, 0.1), log_likelihood=-behind, log_evidence=evidence)
     attribution = Attribution((best, other), 8.0, False)
-    comparison = SimpleNamespace(readers=(None,), floors=(SimpleNamespace(tracked=tracked),))
+    comparison = compared(tracked)
     found = ties(comparison, attribution, best)  # type: ignore[arg-type]
     assert found == {"substrate_tilt": ("stray_field_gradient",) if tied else ()}
 
@@ -151,7 +166,7 @@ def test_what_does_little_of_what_a_weak_effect_does_is_not_tied_with_it(
         replace(contender(name, sigmas, 0.1), log_likelihood=likelihood, log_evidence=likelihood)
         for name, sigmas, likelihood in zip(names, left, likelihoods, strict=True)
     )
-    comparison = SimpleNamespace(readers=(None,), floors=(SimpleNamespace(tracked=COUNT),))
+    comparison = compared(COUNT)
     found = ties(comparison, Attribution((best, *others), 8.0, False), best)  # type: ignore[arg-type]
     assert found == {"substrate_tilt": tied}
 
@@ -173,7 +188,7 @@ def test_either_of_a_pair_is_tied_with_what_does_the_same_beside_the_other() -> 
         )
         for names, likelihood in likelihoods.items()
     ]
-    comparison = SimpleNamespace(readers=(None,), floors=(SimpleNamespace(tracked=COUNT),))
+    comparison = compared(COUNT)
     found = ties(comparison, Attribution(tuple(made), 8.0, False), made[0])  # type: ignore[arg-type]
     assert found == {"substrate_tilt": ("draft_angle",), "size_error": ()}
 
