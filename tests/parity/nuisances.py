@@ -117,7 +117,9 @@ class PlainFit:
             if path is not None:
                 floor, whole = self.stretches[i].floor, self.comparison.floors[i].tracked
                 rows = self._rows(i, local[i], shared, held)
-                tables[i] = np.sqrt(weight_of(rows[: floor.tracked, -1], whole)) * rows
+                weights = np.full(len(rows), weight_of(rows[: floor.tracked, -1], whole))
+                weights[floor.tracked :] = nuisances.outcome_weight
+                tables[i] = np.sqrt(weights)[:, None] * rows
         count = len(shared)
         free = np.arange(count) < (2 if held else count)
         low, high = (np.where(free, bound - shared, 0.0) for bound in nuisances.shared_bounds)
