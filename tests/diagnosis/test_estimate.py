@@ -11,7 +11,8 @@ from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
 from tumblers.diagnosis import diagnose
-from tumblers.diagnosis.estimate import _SIDE, _ends, _gradients, _whole_way
+from tumblers.diagnosis.attribute import SIDE
+from tumblers.diagnosis.estimate import _ends, _gradients, _whole_way
 from tumblers.diagnosis.floor import TOLERANCES
 from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.simulator import Simulator
@@ -100,24 +101,24 @@ def test_a_whole_way_ends_at_the_farthest_side_of_a_range(
 
 
 # The stretch that holds an end is 0.25 ways long near the start and 1.0 farther out, and is halved five times.
-NEAR, FAR = 0.25 * _SIDE / 32.0, 1.0 * _SIDE / 32.0
+NEAR, FAR = 0.25 * SIDE / 32.0, 1.0 * SIDE / 32.0
 
 
 @pytest.mark.parametrize(
     ("rise", "end", "off"),
     [
         # A Gaussian ends where it should, also one that is narrower or wider than Laplace's.
-        (lambda way: way**2, _SIDE, NEAR),
-        (lambda way: (way / 0.1) ** 2, 0.1 * _SIDE, NEAR),
-        (lambda way: (way / 2.5) ** 2, 2.5 * _SIDE, FAR),
+        (lambda way: way**2, SIDE, NEAR),
+        (lambda way: (way / 0.1) ** 2, 0.1 * SIDE, NEAR),
+        (lambda way: (way / 2.5) ** 2, 2.5 * SIDE, FAR),
         # A threshold ends it there, however high it is.
         (lambda way: 1e6 * (way > 1.0), 1.0, NEAR),
         # A narrow ridge within the well does not.
-        (lambda way: way**2 + 100.0 * (0.3 < way < 0.6), _SIDE, NEAR),
+        (lambda way: way**2 + 100.0 * (0.3 < way < 0.6), SIDE, NEAR),
         # Where nothing rises, the range ends it.
         (lambda way: 0.0 * way, 20.0, 0.0),
         # What is better than the fit counts: from there on it rises.
-        (lambda way: (way - 1.5) ** 2 - 1.5**2, 1.5 + _SIDE, NEAR * 4.0),
+        (lambda way: (way - 1.5) ** 2 - 1.5**2, 1.5 + SIDE, NEAR * 4.0),
     ],
 )
 def test_an_interval_ends_where_the_objective_stays_up(rise: Callable[[float], float], end: float, off: float) -> None:

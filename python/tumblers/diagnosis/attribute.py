@@ -38,7 +38,7 @@ from .predictive import is_right
 from .search import Search
 from .tolerated import is_tolerated, tolerated
 
-__all__ = ["LAPSE", "PRIOR", "REFUSED", "Attribution", "attribute", "seen_from_the_best"]
+__all__ = ["LAPSE", "PRIOR", "REFUSED", "ROUGH", "SIDE", "Attribution", "attribute", "seen_from_the_best"]
 
 Floats = NDArray[np.float64]
 
@@ -54,9 +54,9 @@ LAPSE = 0.12
 REFUSED = 0.02
 # Trial points of the last fit of the best, from where it is: intervals are no better than it.
 _LAST_POINTS = 12
-# Standard deviations to either end of a 90 % interval, and ln of by how much a likelihood moves within it where motion
-# is rough.
-_INTERVAL, _ROUGH = 1.645, 3.0
+# Standard deviations to either end of a 90 % interval, and by how much ln of a likelihood moves within one where there
+# are tracks, with the point at which the noise is measured.
+SIDE, ROUGH = 1.645, 3.0
 # Of equals the one that the catalogue lists first is preferred.
 _PER_PLACE = 0.005
 
@@ -201,11 +201,11 @@ def _may_be_tolerated(fitter: Fitter, fit: Fit, scenarios: Sequence[Scenario], d
     low, high = ((np.array(end) - hypothesis.neutral) / hypothesis.scale for end in zip(*ends, strict=True))
     root = np.linalg.cholesky(fit.information(dispersion)).T
     nearest = lsq_linear(root, root @ fit.point, bounds=(low, high)).x
-    if float(np.sum((root @ (nearest - fit.point)) ** 2)) > _INTERVAL**2:
+    if float(np.sum((root @ (nearest - fit.point)) ** 2)) > SIDE**2:
         return False
     fitter.take_likeliest_noise(hypothesis.effects(fit.point))
     there = fitter.residuals(hypothesis, [nearest])[0]
-    return fitter.cost(there, nearest) - fitter.again(fit).cost <= (_INTERVAL**2 + 2.0 * _ROUGH) * dispersion
+    return fitter.cost(there, nearest) - fitter.again(fit).cost <= (SIDE**2 + 2.0 * ROUGH) * dispersion
 
 
 def _seen(fitter: Fitter, contender: Contender, first: bool) -> Contender:

@@ -19,7 +19,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from .attribute import Attribution
+from .attribute import SIDE, Attribution
 from .contender import Contender
 from .fit import Fit, Fitter
 from .hypothesis import Hypothesis
@@ -32,7 +32,6 @@ Floats = NDArray[np.float64]
 # A parameter and a direction; ways along its ridge are in standard deviations.
 _Side = tuple[int, float]
 
-_SIDE = 1.645
 # Where the objective is measured first, in ways to the ends that Laplace's Gaussian would have; and how often the way
 # is doubled where it has not risen there.
 _WAYS, _DOUBLINGS = (0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0), 4
@@ -96,7 +95,7 @@ def _around(fitter: Fitter, dispersion: float, fit: Fit) -> dict[tuple[str, str]
         moved = [hypothesis.values(at(side, reach[side]))[j] - estimates[j] for side in sides if side[0] == j]
         if parameter.turns:
             moved = [(change + _HALF_TURN) % (2.0 * _HALF_TURN) - _HALF_TURN for change in moved]
-        least = _SIDE * least_deviation(*key, float(estimates[j]), scenarios)
+        least = SIDE * least_deviation(*key, float(estimates[j]), scenarios)
         # What the sensor's tolerance takes was not fitted here, and is known no better than that.
         taken = parameter.beyond if hypothesis.high[j] <= hypothesis.low[j] else None
         if taken is not None:
@@ -117,9 +116,9 @@ def _ends(rises: Callable[[list[tuple[_Side, float]]], list[float]], whole: dict
 
     def last_near(side: _Side) -> float:
         least = min(known[side].values())
-        return max(way for way, rise in known[side].items() if rise <= least + _SIDE**2 or way == 0.0)
+        return max(way for way, rise in known[side].items() if rise <= least + SIDE**2 or way == 0.0)
 
-    measure([(side, way) for side in whole for way in sorted({min(_SIDE * k, whole[side]) for k in _WAYS})])
+    measure([(side, way) for side in whole for way in sorted({min(SIDE * k, whole[side]) for k in _WAYS})])
     for _ in range(_DOUBLINGS):
         flat = [side for side in whole if last_near(side) == max(known[side]) < whole[side]]
         measure([(side, min(2.0 * max(known[side]), whole[side])) for side in flat])

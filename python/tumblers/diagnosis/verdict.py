@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from .attribute import Attribution
+from .attribute import ROUGH, Attribution
 from .comparison import Comparison
 from .contender import Contender
 from .predictive import is_right
@@ -16,9 +16,8 @@ __all__ = ["judge", "refused", "ties"]
 
 # Where noise may explain it all, an effect is named only where that is less probable than this.
 _LEAST_DOUBT = 0.05
-# Evidence or likelihoods less than this factor apart, ln 20; and that of tracks by e^3 more, by which it moves within
-# an interval with the point at which the noise is measured.
-_TIED, _ROUGH = 3.0, 3.0
+# Evidence or likelihoods less than this factor apart, ln 20; and that of tracks by `ROUGH` more.
+_TIED = 3.0
 # What adds less than this share of what an effect adds does not do the same: it goes an eighth of the way. A choice.
 _MUCH = 0.25
 
@@ -94,7 +93,7 @@ def ties(comparison: Comparison, attribution: Attribution, chosen: Contender) ->
     weights = np.concatenate(
         [np.where(np.arange(floor.size) < floor.tracked, 1.0, comparison.alike) for floor in comparison.floors]
     )
-    limit = _TIED + (_ROUGH if any(floor.tracked for floor in comparison.floors) else 0.0)
+    limit = _TIED + (ROUGH if any(floor.tracked for floor in comparison.floors) else 0.0)
     known = {frozenset(contender.names): contender for contender in attribution.contenders}
     out: dict[str, list[str]] = {}
     for name in chosen.names:
