@@ -94,9 +94,7 @@ class NuisanceFit:
         Standard deviations of the same.
     """
 
-    def __init__(
-        self, sensor: Sensor, readers: Sequence[Reader], outcome_weight: float = 1.0, threads: int = 0
-    ) -> None:
+    def __init__(self, sensor: Sensor, readers: Sequence[Reader], outcome_weight: float, threads: int = 0) -> None:
         self.outcome_weight, self.threads = outcome_weight, threads
         self.tracked = np.array([len(reader.observed.time_s) > 0 for reader in readers], dtype=np.bool_)
         self.local_bounds = np.empty((len(readers), 3))
