@@ -1,0 +1,85 @@
+"""Files are written whole or not at all, and a writer that was killed leaves nothing for long."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tumblers.atomic import is_unfinished, write_files
+
+pytestmark = pytest.mark.skipif(os.name == "nt", reason="signals and locks")
+
+# Says that it has begun, and then waits in the middle: for the second file, whose bytes are asked for last.
+WRITER = """
+import sys
+from pathlib import Path
+from tumblers import atomic
+
+class Slow(dict):
+    def items(self):
+        yield Path("one.nc"), b"half"
+        print("begun", flush=True)
+        sys.stdin.read()
+        yield Path("two.nc"), b"half"
+
+atomic.write_files(Slow({Path("one.nc"): b""}))
+"""
+
+
+def names(folder: Path) -> set[str]:
+    return {file.name for file in folder.iterdir()}
+
+
+def begun(folder: Path) -> subprocess.Popen[str]:
+    """Start a process that has begun to write and does not go on."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", WRITER], cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline() == "begun\n"
+    return process
+
+
+def test_what_a_killed_writer_left_goes_with_the_next_write_of_that_file(tmp_path: Path) -> None:
+    process = begun(tmp_path)
+    process.send_signal(signal.SIGKILL)
+    process.communicate()
+    (left,) = tmp_path.iterdir()
+    assert is_unfinished(left)
+    write_files({tmp_path / "three.nc": b"other"})
+    assert names(tmp_path) == {left.name, "three.nc"}
+    write_files({tmp_path / "one.nc": b"whole"})
+    assert names(tmp_path) == {"one.nc", "three.nc"}
+    assert (tmp_path / "one.nc").read_bytes() == b"whole"
+
+
+def test_what_another_writer_is_at_is_left_to_it(tmp_path: Path) -> None:
+    process = begun(tmp_path)
+    write_files({tmp_path / "one.nc": b"whole"})
+    assert len(names(tmp_path)) == 2
+    assert (tmp_path / "one.nc").read_bytes() == b"whole"
+    process.communicate()
+    assert process.returncode == 0
+    assert names(tmp_path) == {"one.nc", "two.nc"}
+    assert (tmp_path / "one.nc").read_bytes() == b"half"
+
+
+def test_hidden_files_of_others_stay(tmp_path: Path) -> None:
+    others = {".one.nc.tmp", ".one.nc.backup.tmp", f".one.nc.{'g' * 32}.tmp"}
+    for name in others:
+        (tmp_path / name).write_text("mine")
+    write_files({tmp_path / "one.nc": b"whole"})
+    assert names(tmp_path) == {"one.nc", *others}
+
+
+def test_where_one_file_cannot_be_written_none_is(tmp_path: Path) -> None:
+    (tmp_path / "one.nc").write_bytes(b"before")
+    with pytest.raises(FileNotFoundError):
+        write_files({tmp_path / "one.nc": b"after", tmp_path / "none" / "two.nc": b"after"})
+    assert names(tmp_path) == {"one.nc"}
+    assert (tmp_path / "one.nc").read_bytes() == b"before"
