@@ -11,7 +11,7 @@ from tumblers.dataset import Dataset, LabTrial, Outcome, load
 from tumblers.diagnosis.attribute import attribute
 from tumblers.diagnosis.candidate import Candidate, candidates, turned
 from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.fit import Fitter
+from tumblers.diagnosis.fitter import Fitter
 from tumblers.diagnosis.foretold import CLIMBS, RUNS, SLIDES, STAYS, Said, foretell
 from tumblers.diagnosis.information import information
 from tumblers.diagnosis.next_trial import in_one_step, next_trials

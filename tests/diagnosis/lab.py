@@ -13,7 +13,7 @@ import pytest
 from tumblers import _core
 from tumblers.dataset import Dataset, LabTrial, Outcome, Sensor, Track
 from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.fit import Fitter
+from tumblers.diagnosis.fitter import Fitter
 from tumblers.diagnosis.pose import body_axis, heading_of, tilt_of
 from tumblers.diagnosis.simulator import LONGEST_STEP_S, Job, Simulator
 from tumblers.effects.base import Effect

@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 from tumblers.diagnosis.beginnings import from_beginnings, from_its_own_beginning, promise
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.contender import of_fit
-from tumblers.diagnosis.fit import Fitter
+from tumblers.diagnosis.fitter import Fitter
 from tumblers.diagnosis.own_noise import settled_at
 from tumblers.diagnosis.search import Search
 from tumblers.diagnosis.simulator import Simulator

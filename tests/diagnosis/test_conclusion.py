@@ -10,7 +10,7 @@ import pytest
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.conclusion import _equally_far, concluded
 from tumblers.diagnosis.contender import Contender, of_fit, of_nominal
-from tumblers.diagnosis.fit import Fitter
+from tumblers.diagnosis.fitter import Fitter
 from tumblers.diagnosis.hypothesis import SECOND
 from tumblers.diagnosis.own_noise import against_the_best, beside, settled_at
 from tumblers.diagnosis.search import Search

@@ -13,7 +13,7 @@ from numpy.testing import assert_array_equal
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.contender import Contender, of_fit, of_nominal
 from tumblers.diagnosis.counterpart import counterparts, with_counterparts
-from tumblers.diagnosis.fit import Fitter
+from tumblers.diagnosis.fitter import Fitter
 from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.own_noise import settled_at
 from tumblers.diagnosis.search import Search

@@ -10,7 +10,8 @@ from numpy.testing import assert_allclose
 
 from tumblers.dataset import Dataset, Outcome
 from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.fit import Fitter, _Descent
+from tumblers.diagnosis.descent import Descent
+from tumblers.diagnosis.fitter import Fitter
 from tumblers.diagnosis.loss import FAR, HUBER, huber, robust_cost
 from tumblers.diagnosis.search import Search
 from tumblers.diagnosis.simulator import Simulator
@@ -55,7 +56,7 @@ def test_least_squares_see_the_loss_of_the_objective() -> None:
     comparison = Comparison(with_a_speed(), Simulator(with_a_speed()))
     fitter = Fitter(comparison)
     (hypothesis,) = Search(fitter, [MagnetizationStrength], quiet, 0).possible
-    descent = _Descent(fitter, hypothesis, np.array([0.05]), fitter.trials, 1.0)
+    descent = Descent(fitter, hypothesis, np.array([0.05]), fitter.trials, 1.0)
     # Differences of a track and of an outcome on either side of Huber's limit, weighed as in the rows.
     count, alike = comparison.floors[0].tracked, comparison.alike
     weights = np.ones(len(descent.limits))

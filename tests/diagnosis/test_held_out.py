@@ -14,7 +14,7 @@ from tumblers.diagnosis.attribute import REFUSED
 from tumblers.diagnosis.comparison import Comparison, Residual
 from tumblers.diagnosis.contender import Contender, of_fit
 from tumblers.diagnosis.diagnose import _Conclusion
-from tumblers.diagnosis.fit import Fitter
+from tumblers.diagnosis.fitter import Fitter
 from tumblers.diagnosis.floor import SHARED
 from tumblers.diagnosis.held_out import HeldOut, folds, held_out, is_foretold, shrink
 from tumblers.diagnosis.hypothesis import Hypothesis

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.fit import Fitter
+from tumblers.diagnosis.fitter import Fitter
 from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.least import least
 from tumblers.diagnosis.simulator import Simulator

@@ -15,7 +15,7 @@ from tumblers import Scenario, simulate
 from tumblers.dataset import Dataset
 from tumblers.diagnosis import Diagnosis, diagnose
 from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.fit import Fitter
+from tumblers.diagnosis.fitter import Fitter
 from tumblers.diagnosis.loss import robust_cost
 from tumblers.diagnosis.pose import Path
 from tumblers.diagnosis.simulator import Simulator, _rows_every

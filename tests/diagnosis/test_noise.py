@@ -10,7 +10,8 @@ import pytest
 from tumblers.dataset import Dataset, Outcome
 from tumblers.diagnosis import built_floors
 from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.fit import _SHARES, Fitter
+from tumblers.diagnosis.fitter import Fitter
+from tumblers.diagnosis.objective import _SHARES
 from tumblers.diagnosis.simulator import Job, Simulator
 from tumblers.effects.base import Effect
 from tumblers.effects.friction_coefficient import FrictionCoefficient

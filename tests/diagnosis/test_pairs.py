@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 
 from tumblers.diagnosis.comparison import Comparison, Residual
 from tumblers.diagnosis.contender import of_fit, of_nominal
-from tumblers.diagnosis.fit import Fitter
+from tumblers.diagnosis.fitter import Fitter
 from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.own_noise import settled_at
 from tumblers.diagnosis.pairs import Pairs, firsts, nested

@@ -11,7 +11,7 @@ import pytest
 from tumblers.diagnosis.beginnings import MANY
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.contender import Contender, of_fit, of_nominal
-from tumblers.diagnosis.fit import Fitter
+from tumblers.diagnosis.fitter import Fitter
 from tumblers.diagnosis.own_noise import NEAR, OWN, beside
 from tumblers.diagnosis.pairs import Pairs
 from tumblers.diagnosis.search import Search, _kept

@@ -9,7 +9,7 @@ import pytest
 
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.contender import Contender, of_fit
-from tumblers.diagnosis.fit import Fitter
+from tumblers.diagnosis.fitter import Fitter
 from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.occam import unneeded
 from tumblers.diagnosis.own_noise import POLISH_POINTS, by_itself, settled_at

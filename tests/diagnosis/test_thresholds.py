@@ -7,7 +7,7 @@ import pytest
 
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.contender import of_nominal
-from tumblers.diagnosis.fit import Fitter
+from tumblers.diagnosis.fitter import Fitter
 from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.search import Search
 from tumblers.diagnosis.simulator import Simulator

@@ -10,7 +10,7 @@ import pytest
 from tumblers.diagnosis.attribute import _with_tolerated
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.contender import of_fit, of_nominal
-from tumblers.diagnosis.fit import Fitter
+from tumblers.diagnosis.fitter import Fitter
 from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.simulator import Simulator
 from tumblers.diagnosis.tolerated import is_tolerated

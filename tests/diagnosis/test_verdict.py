@@ -11,7 +11,7 @@ import pytest
 from tumblers.diagnosis.attribute import LAPSE, REFUSED, Attribution, _ranked
 from tumblers.diagnosis.comparison import Comparison, Residual
 from tumblers.diagnosis.contender import Contender, of_fit, of_nominal
-from tumblers.diagnosis.fit import Fitter
+from tumblers.diagnosis.fitter import Fitter
 from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.simulator import Simulator
 from tumblers.diagnosis.verdict import judge, refused, ties

@@ -31,7 +31,8 @@ from ..scenario import Scenario
 from .comparison import Comparison
 from .conclusion import in_steps_of
 from .contender import Contender, of_fit, of_nominal
-from .fit import Fit, Fitter
+from .fit import Fit
+from .fitter import Fitter
 from .hypothesis import SECOND
 from .occam import log_occam
 from .predictive import is_right

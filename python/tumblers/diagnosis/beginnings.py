@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.stats import qmc
 
 from .contender import Contender, of_fit
-from .fit import Fitter
+from .fitter import Fitter
 from .hypothesis import Hypothesis
 from .least import least
 

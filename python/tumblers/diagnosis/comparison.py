@@ -234,7 +234,7 @@ class Comparison:
         return tuple(floor.size for floor in self.floors)
 
     def weight(self, trial: int, values: Floats) -> float:
-        """Return how much a trial's track counts: less where the model is far from it (`Fitter`'s objective).
+        """Return how much a trial's track counts: less where the model is far from it (`Objective`).
 
         Parameters
         ----------

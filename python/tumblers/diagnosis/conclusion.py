@@ -12,7 +12,7 @@ import numpy as np
 
 from ..progress import OnPhase
 from .contender import Contender, likeliest_first, of_nominal
-from .fit import Fitter
+from .fitter import Fitter
 from .hypothesis import SECOND
 from .own_noise import MOST_OWN, OWN, again, against_the_best, by_itself, each_by_itself, settled
 from .pairs import AS_GOOD, nested

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from ..effects.base import Effect
 from .comparison import Residual
-from .fit import Fit, Fitter
+from .fit import Fit
+from .fitter import Fitter
 from .step_credit import step_credit
 
 __all__ = ["Contender", "likeliest", "likeliest_first", "of_fit", "of_nominal"]

@@ -26,7 +26,8 @@ from numpy.typing import NDArray
 from ..effects.base import Effect
 from ..progress import OnPhase
 from .contender import Contender, likeliest, likeliest_first
-from .fit import Fit, Fitter
+from .fit import Fit
+from .fitter import Fitter
 from .hypothesis import Hypothesis
 from .own_noise import ENOUGH, IDLE_POINTS, against_itself, settled_at
 from .pairs import AS_GOOD

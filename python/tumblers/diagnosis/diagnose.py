@@ -21,7 +21,7 @@ from .comparison import Comparison
 from .contender import Contender
 from .diagnosis import Diagnosis
 from .estimate import intervals
-from .fit import Fitter
+from .fitter import Fitter
 from .floor import TOLERANCES
 from .held_out import HeldOut, folds, held_out, is_foretold, shrink
 from .hypothesis import SECOND

@@ -21,7 +21,8 @@ from numpy.typing import NDArray
 
 from .attribute import SIDE, Attribution
 from .contender import Contender
-from .fit import Fit, Fitter
+from .fit import Fit
+from .fitter import Fitter
 from .hypothesis import Hypothesis
 from .result import Interval
 from .tolerated import least_deviation

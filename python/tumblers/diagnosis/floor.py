@@ -20,7 +20,7 @@ scheme: numbers that were themselves computed, in whatever step, are not taken f
 A strong effect can make a motion chaotic that was not, or end a chaos. Each hypothesis that counts therefore has its
 own Σ, with the changes around itself, and pays for it: a likelihood has ln det Σ beside the squares, so that nothing is
 explained by being vague; how much of the changes is needed in a trial, a share of 1 or less, its differences say
-(`Fitter.take_likeliest_noise`).
+(`Objective.take_likeliest_noise`).
 """
 
 from __future__ import annotations

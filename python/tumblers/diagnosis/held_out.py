@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from ..field import RotatingField, StaticField
 from .comparison import Residual
 from .contender import Contender
-from .fit import Fit, Fitter
+from .fit import Fit
+from .fitter import Fitter
 from .floor import SHARED
 from .hypothesis import PRIOR_SIGMA
 from .loss import robust_cost

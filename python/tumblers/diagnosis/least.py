@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from ..effects.base import Effect
 from .comparison import Residual
-from .fit import Fitter
+from .fitter import Fitter
 from .hypothesis import Hypothesis
 from .thresholds import CLEAR
 

@@ -44,7 +44,7 @@ def robust_cost(values: Floats) -> float:
 
 
 def weight_of(track: Floats, count: int) -> float:
-    """Return how much a trial's track counts: less where the model is far from it (`Fitter`'s objective).
+    """Return how much a trial's track counts: less where the model is far from it (`Objective`).
 
     Parameters
     ----------

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from ..progress import OnPhase
 from .contender import Contender, likeliest_first
-from .fit import Fit, Fitter
+from .fit import Fit
+from .fitter import Fitter
 from .least import least
 from .own_noise import ENOUGH, settled_at
 from .thresholds import CLEAR

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from .comparison import Comparison
 from .contender import Contender
-from .fit import Fitter
+from .fitter import Fitter
 from .held_out import HeldOut
 from .pose import Path, body_axis, heading_of, tilt_of
 from .reading import seen_by

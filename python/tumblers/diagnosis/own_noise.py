@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 from ..progress import OnPhase
 from .contender import Contender, likeliest_first, of_fit, of_nominal
-from .fit import Fit, Fitter
+from .fit import Fit
+from .fitter import Fitter
 from .hypothesis import Hypothesis
 from .thresholds import CLEAR
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..effects.base import Effect
 from .contender import Contender, likeliest, likeliest_first, of_fit
-from .fit import Fitter
+from .fitter import Fitter
 from .hypothesis import Hypothesis
 from .least import least
 from .own_noise import POLISH_POINTS, by_itself

@@ -23,7 +23,7 @@ from scipy.stats import qmc
 from ..effects.base import Effect
 from .attribute import Attribution
 from .contender import Contender
-from .fit import Fitter
+from .fitter import Fitter
 from .hypothesis import PRIOR_SIGMA, Hypothesis
 
 __all__ = ["samples"]

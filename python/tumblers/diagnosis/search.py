@@ -20,7 +20,7 @@ from .beginnings import MANY, beginning, from_beginnings, from_its_own_beginning
 from .conclusion import concluded, resolved
 from .contender import Contender, likeliest, likeliest_first, of_fit, of_nominal
 from .counterpart import with_counterparts
-from .fit import Fitter
+from .fitter import Fitter
 from .hypothesis import SECOND, Hypothesis
 from .nearby import all_shaken, shaken
 from .own_noise import IDLE_POINTS, MOST_OWN, NEAR, OWN, again, by_itself, settled

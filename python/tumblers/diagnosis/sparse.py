@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .contender import Contender, likeliest
-from .fit import Fitter
+from .fitter import Fitter
 from .hypothesis import Hypothesis
 from .least import least
 from .occam import unneeded

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from ..effects.base import Effect
 from .comparison import Residual
-from .fit import Fitter
+from .fitter import Fitter
 from .predictive import is_right
 
 __all__ = ["step_credit"]

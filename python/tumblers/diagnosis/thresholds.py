@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .comparison import Residual
-from .fit import Fitter
+from .fitter import Fitter
 from .hypothesis import Hypothesis
 
 __all__ = ["CLEAR", "beyond_thresholds"]
