@@ -20,6 +20,7 @@ from tumblers.diagnosis.tolerated import least_deviation
 from tumblers.effects.magnetization_misalignment import MagnetizationMisalignment
 from tumblers.effects.magnetization_strength import MagnetizationStrength
 from tumblers.effects.size_error import SizeError
+from tumblers.effects.stray_field_gradient import StrayFieldGradient
 
 from .lab import measure, plan
 
@@ -46,6 +47,12 @@ def test_where_the_coordinates_are_the_parameters_the_derivatives_are_the_scales
     # At an upper end a step outwards would be clipped to nothing; at a lower one a step inwards is an ordinary one.
     for point in (np.full(count, 0.1), hypothesis.low, hypothesis.high):
         assert_allclose(_gradients(hypothesis, point), np.diag(hypothesis.scale), rtol=1e-8, atol=1e-12)
+
+
+def test_what_is_flat_beside_a_point_has_the_slope_to_the_end_of_its_range() -> None:
+    hypothesis = Hypothesis.of(StrayFieldGradient, [Simulator(plan()).nominal(0)])
+    expected = np.diag([*hypothesis.scale[:3], 3.0])
+    assert_allclose(_gradients(hypothesis, np.zeros(4)), expected, rtol=1e-8, atol=1e-12)
 
 
 # Beside the half turn, a step of 1e-6 ends on its other side: there θ2 goes from -180° to 180°.

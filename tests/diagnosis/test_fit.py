@@ -16,6 +16,7 @@ from tumblers.diagnosis.loss import FAR, HUBER, huber, robust_cost
 from tumblers.diagnosis.search import Search
 from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects.magnetization_strength import MagnetizationStrength
+from tumblers.effects.stray_field_gradient import StrayFieldGradient
 
 from .lab import PLANS, measure, plan, quiet, rollouts_made
 
@@ -93,3 +94,15 @@ def test_a_descent_ends_where_the_fit_does_and_its_derivatives_serve_again(monke
     assert sum(made) == 0
     assert again.cost != fit.cost
     assert_allclose(again.steps, fit.steps)
+
+
+def test_a_fit_from_the_truth_ends_no_worse_where_some_fields_are_at_rest() -> None:
+    pull = StrayFieldGradient(gradient_T_per_m=(0.0, 0.0, 0.04))
+    dataset = measure(plan(), (pull,), seed=4)
+    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
+    (hypothesis,) = Search(fitter, [StrayFieldGradient], quiet, 0).possible
+    truth = (np.array(pull.to_fit(pull.vector())) - hypothesis.neutral) / hypothesis.scale
+    found = fitter.fit(hypothesis, truth)
+    assert found.cost <= fitter.cost(fitter.residuals(hypothesis, [truth])[0], truth)
+    still = found.hypothesis.effects(found.point)[0].edit(fitter.comparison.simulator.nominal(4))
+    assert still.surroundings.force_N[2] > 0.0

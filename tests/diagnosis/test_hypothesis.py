@@ -16,6 +16,8 @@ from tumblers.effects.field_rolloff import FieldRolloff
 from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.effects.magnetization_misalignment import MagnetizationMisalignment
 from tumblers.effects.size_error import SizeError
+from tumblers.effects.stray_field_gradient import StrayFieldGradient
+from tumblers.scenario import Scenario
 
 from .lab import UPWARDS, plan
 
@@ -47,6 +49,24 @@ def test_a_misalignment_is_smooth_around_neutral_and_has_no_end_at_half_a_turn()
 
 def _both(hypothesis: Hypothesis) -> list[Effect]:
     return [hypothesis.effects(point)[0] for point in ([-0.2, 1e-6], [-0.2, -1e-6])]
+
+
+def test_a_pull_stays_in_a_field_at_rest_until_it_grows_with_the_frequency() -> None:
+    still, turning = (Simulator(plan()).nominal(i) for i in (4, 0))
+    hypothesis = Hypothesis.of(StrayFieldGradient, [still, turning])
+
+    def pull(scenario: Scenario, power: float) -> float:
+        (effect,) = hypothesis.effects([0.5, 0.0, 0.0, power])
+        return effect.edit(scenario).surroundings.force_N[0]
+
+    # Least squares keep off the ends of a range by a hair, and their derivatives take steps of up to 5e-2.
+    for power in (1e-10, 1e-3, 5e-2):
+        assert pull(still, power) == pull(still, 0.0) > 0.0
+        assert pull(turning, power) == pull(turning, 0.0)
+    assert pull(still, 0.2) == 0.0
+    powers = [pull(turning, power) for power in np.linspace(0.1, 1.0, 50)]
+    assert np.all(np.diff(powers) < 0.0)
+    assert powers[-1] == pytest.approx(pull(turning, 0.0) * 0.2**3)
 
 
 def test_what_changes_no_trial_has_no_start() -> None:

@@ -135,7 +135,10 @@ def _ends(rises: Callable[[list[tuple[_Side, float]]], list[float]], whole: dict
 
 
 def _gradients(hypothesis: Hypothesis, point: Floats) -> Floats:
-    """Return the derivatives of the parameters by the coordinates, shape (p, p)."""
+    """Return the derivatives of the parameters by the coordinates, shape (p, p).
+
+    One that does not change beside the point has the slope to the farther end of its range.
+    """
     step = 1e-6
     turns = [parameter.turns for kind in hypothesis.kinds for parameter in kind.parameters]
     columns = []
@@ -145,7 +148,13 @@ def _gradients(hypothesis: Hypothesis, point: Floats) -> Floats:
         moved = hypothesis.values(point + signed * np.eye(len(point))[j]) - hypothesis.values(point)
         moved = np.where(turns, (moved + _HALF_TURN) % (2.0 * _HALF_TURN) - _HALF_TURN, moved)
         columns.append(moved / signed)
-    return np.column_stack(columns)
+    slopes = np.column_stack(columns)
+    for j in range(len(point)):
+        below, above = hypothesis.low[j] - point[j], hypothesis.high[j] - point[j]
+        way = above if above > -below else below
+        if slopes[j, j] == 0.0 and way != 0.0:
+            slopes[j, j] = (hypothesis.values(point + way * np.eye(len(point))[j]) - hypothesis.values(point))[j] / way
+    return slopes
 
 
 def _whole_way(hypothesis: Hypothesis, point: Floats, direction: Floats) -> float:

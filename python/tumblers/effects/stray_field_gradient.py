@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import hypot
 from typing import TYPE_CHECKING, ClassVar
@@ -17,6 +18,9 @@ if TYPE_CHECKING:
 __all__ = ["StrayFieldGradient"]
 
 _REFERENCE_HZ = 10.0
+# Coordinates of a fit up to this one mean an exponent of zero: where no field rotates 0⁰ is 1, and any power above
+# nothing is 0, so that a fit whose steps left zero would lose the pull there.
+_EVEN = 0.3
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -87,6 +91,32 @@ class StrayFieldGradient(Effect):
             (0.0, -0.05, 0.0, 2.0),
             (0.0, 0.05, 0.0, 2.0),
         )
+
+    @classmethod
+    def to_fit(cls, values: Sequence[float]) -> tuple[float, ...]:
+        """Return the gradient, and an exponent whose values near zero are left out.
+
+        Parameters
+        ----------
+        values
+            Of the parameters, in their order.
+        """
+        *gradient, exponent = values
+        most = cls.parameters[-1].high
+        return (*gradient, _EVEN + exponent * (1.0 - _EVEN / most) if exponent > 0.0 else 0.0)
+
+    @classmethod
+    def from_fit(cls, coordinates: Sequence[float]) -> tuple[float, ...]:
+        """Return the gradient and the exponent at a fit's coordinates.
+
+        Parameters
+        ----------
+        coordinates
+            As many as there are parameters.
+        """
+        *gradient, beyond = coordinates
+        most = cls.parameters[-1].high
+        return (*gradient, max(beyond - _EVEN, 0.0) / (1.0 - _EVEN / most))
 
     def act(self, scenario: Scenario) -> Scenario:
         """Return the scenario with the pull added to the force on the robot.
