@@ -238,32 +238,33 @@ class FadingMagnet(Outside):
 
 @dataclass(frozen=True, kw_only=True)
 class AmplifierDropout(Outside):
-    """The amplifier drops out for up to a third of each cycle.
+    """The amplifier falls short in a part of each cycle, down to nothing.
 
     Attributes
     ----------
-    phase
-        Where in the cycle it begins, from 0 to 1.
+    phase, share
+        Where in the cycle it begins, and how much of the cycle it lasts, from 0 to 1.
     """
 
     every = _EVERY
     phase: float
+    share: float
 
     @classmethod
     def draw(cls, rng: np.random.Generator, robot: Robot) -> AmplifierDropout:  # noqa: ARG003
         """Return one for a robot."""
-        return cls(size=1.0, phase=float(rng.uniform(0.0, 1.0)))
+        return cls(size=1.0, phase=float(rng.uniform(0.0, 1.0)), share=float(rng.uniform(0.1, 0.3)))
 
     def piece(self, scenario: Scenario, time_s: float, state: State) -> Scenario:  # noqa: ARG002
-        """Return the scenario with or without its field."""
+        """Return the scenario with what there is of its field."""
         field = scenario.field
-        if not isinstance(field, RotatingField) or (time_s * field.frequency_Hz - self.phase) % 1.0 > self.size / 3.0:
+        if not isinstance(field, RotatingField) or (time_s * field.frequency_Hz - self.phase) % 1.0 > self.share:
             return scenario
-        return replace(scenario, field=replace(field, strength_T=0.0))
+        return replace(scenario, field=replace(field, strength_T=(1.0 - self.size) * field.strength_T))
 
     def where(self) -> Region:
         """Return the part of the cycle."""
-        return {"cycle_phase_deg": (360.0 * self.phase, 360.0 * (self.phase + self.size / 3.0))}
+        return {"cycle_phase_deg": (360.0 * self.phase, 360.0 * (self.phase + self.share))}
 
 
 @dataclass(frozen=True, kw_only=True)
