@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import fields
 from math import inf
 from os import PathLike
 
@@ -63,12 +64,14 @@ def difference_sigma(
     Returns
     -------
     float
-        Root mean square after the nuisances are taken out; infinite where one of them cannot be simulated.
+        Root mean square of what neither the sensor's tolerances nor one standard deviation of each nominal number can
+        take, as a cause's strength is measured; infinite where one of them cannot be simulated.
     """
     data = dataset if isinstance(dataset, Dataset) else load(dataset)
-    lab = _lab(data)
+    lab, nominal = _lab(data), Jitter(dimensions=(1.0,) * len(fields(data.robot.shape)))
     try:
-        return strength(lab, _scenes(lab, first, jitter or Jitter()), _scenes(lab, second, Jitter())).sigma
+        moved = [_scenes(lab, second, raised) for raised in nominal.each_raised()]
+        return strength(lab, _scenes(lab, first, jitter or nominal), _scenes(lab, second, nominal), moved).sigma
     except (ArithmeticError, TumblersError):
         return inf
 
