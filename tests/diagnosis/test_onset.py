@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from tumblers.blind.law import Law
-from tumblers.blind.outside import PhaseJump, StickySpot
+from tumblers.blind.outside import AmplifierDropout, PhaseJump, StickySpot
 from tumblers.blind.view import channels_of
 from tumblers.blind.world import watch
 from tumblers.dataset import Dataset, Track
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.localise import localise
-from tumblers.diagnosis.onset import _evidence, _shared, begins_at_place, begins_at_time
+from tumblers.diagnosis.onset import _evidence, _shared, begins_at_phase, begins_at_place, begins_at_time
 from tumblers.diagnosis.result import Region
 from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects import get
@@ -105,6 +105,13 @@ def test_a_sticky_place_is_found_where_it_is_and_not_where_the_robot_came_late_f
     assert shared(found, *place) > 0.5
 
 
+@pytest.mark.parametrize(("phase", "share"), [(0.3, 0.2), (0.15, 0.25)])
+def test_a_field_that_falls_short_in_a_part_of_the_cycle_is_wrong_there(phase: float, share: float) -> None:
+    law = AmplifierDropout(size=0.8, phase=phase, share=share)
+    (found,) = where(filmed(LONGER, law, seed=6, frames_per_second=120.0), "cycle_phase_deg")
+    assert shared(found, 360.0 * phase, 360.0 * (phase + share)) > 0.5
+
+
 @pytest.mark.parametrize(
     ("effect", "vector"),
     [
@@ -129,5 +136,5 @@ def test_what_acts_all_along_sets_in_nowhere(effect: str, vector: tuple[float, .
 def test_noise_sets_in_nowhere(seed: int) -> None:
     comparison = compared(measure(PLANNED, seed=seed, clock_frames=0.3))
     residual = comparison.residual(comparison.nominal_paths)
-    assert begins_at_time(comparison, residual, comparison.nominal_paths) is None
-    assert begins_at_place(comparison, residual, comparison.nominal_paths) is None
+    for begins in (begins_at_time, begins_at_place, begins_at_phase):
+        assert begins(comparison, residual, comparison.nominal_paths) is None

@@ -305,7 +305,9 @@ class Comparison:
         found = self.nuisances.fitted(runs, stretches, counted, tolerance, fit_nuisances)
         return [self._found(fitted, stretches) for fitted in found]
 
-    def residual_of_beginnings(self, paths: Sequence[Path | None], last_s: float, tolerance: Floats) -> Residual:
+    def residual_of_beginnings(
+        self, paths: Sequence[Path | None], last_s: Sequence[float], tolerance: Floats
+    ) -> Residual:
         """Return how wrong a model is all along with the sensor's nuisances fitted to the beginnings.
 
         Parameters
@@ -313,12 +315,12 @@ class Comparison:
         paths
             The model's, one for each trial.
         last_s
-            Time of the last frame at most that they are fitted to, s.
+            Time of the last frame at most that they are fitted to, s, of each trial.
         tolerance
             How far the nominal numbers are off, shape (`SHARED`,).
         """
-        each = zip(self.readers, self.floors, strict=True)
-        stretches = [Stretch.beginning(reader, floor, last_s) for reader, floor in each]
+        each = zip(self.readers, self.floors, last_s, strict=True)
+        stretches = [Stretch.beginning(reader, floor, last) for reader, floor, last in each]
         (fitted,) = self.nuisances.fitted([paths], stretches, range(len(stretches)), tolerance)
         return self.held(paths, self._found(fitted, stretches))
 

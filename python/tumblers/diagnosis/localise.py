@@ -10,8 +10,8 @@ noise gives it. A part of the data counts as affected where in one of its channe
 which is three standard errors of a sum of squares whose numbers are correlated in pairs. No part counts as affected
 unless a trial does, and in a trial ν is 1, the floor's variance, which is more than the noise has.
 
-Of time and of place along y an interval holds most of what is affected. Where the gap sets in at a moment or in a place
-that trials share (`onset`), the region is that instead.
+Of time, of place and of the cycle an interval holds most of what is affected. Where the gap sets in at a moment, in a
+place along y or in a part of the cycle that trials share (`onset`), the region is that instead.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from .cells import MODES, Cells
 from .comparison import Comparison, Residual
 from .observed import CHANNELS
-from .onset import begins_at_place, begins_at_time
+from .onset import begins_at_phase, begins_at_place, begins_at_time
 from .pose import Path
 from .result import HeatMap, Region
 
@@ -93,7 +93,7 @@ def localise(
     total = float(np.sum(np.maximum(_sums(cells.trial, cells.excess, len(ids)), 0.0)))
     regions = _trials(cells, ids, total)
     if regions:
-        found = (begins_at_time(comparison, residual, paths), begins_at_place(comparison, residual, paths))
+        found = [begins(comparison, residual, paths) for begins in (begins_at_time, begins_at_place, begins_at_phase)]
         begun = {region.axis: region for region in found if region is not None}
         for axis in axes.values():
             regions += [begun[axis.name]] if axis.name in begun else _interval(cells, axis, total)

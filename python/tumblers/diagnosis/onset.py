@@ -1,9 +1,9 @@
-"""A gap that sets in at a moment or in a place that the trials share: until then the model is right.
+"""A gap that sets in at a moment, a place or a part of the cycle that trials share: until then the model is right.
 
 How far off numbers are is counted in steps of one standard deviation, so that none decides alone; in x, y and heading,
-which stay off once they are, what counts is by how much each is off from those just before. A region S of time or place
-is held against a cause that acts all along. Of a channel of a trial, k_j numbers fall into step j before the trial
-comes to S, k'_j in S, and k''_j after it:
+which stay off once they are, what counts is by how much each is off from those just before. A region S of time, of
+place or of the cycle is held against a cause that acts all along. Of a channel of a trial, k_j numbers fall into step j
+before the trial first comes to S, k'_j in S, and k''_j after it and not in S:
 
 ```text
 Λ(S) = Σ [ln L(k; 1) + ln L(k') + ln L(k'') - ln L(k + k' + k'')] / a
@@ -11,8 +11,8 @@ ln L(k; v) = Σ_j k_j ln[(1 - ε) P(N(0, v) in step j) + ε/J],      v >= 1 the 
 ```
 
 a is how many neighbouring numbers count as one. What comes after S need not be right: a robot that was held up may stay
-off its course. The first half of a cycle does not count, for until then no cause has had its turn, nor does a trial
-whose field does not rotate.
+off its course. Of time and place the first half of a cycle does not count, for until then no cause has had its turn. A
+trial whose field does not rotate does not count at all.
 
 The likeliest S is told where it is three standard deviations clear, over all that were looked at, where more of what is
 gained lies in it than of the numbers, and where two trials or more speak for it and few had rather a region of their
@@ -35,7 +35,7 @@ from .observed import CHANNELS
 from .pose import Path
 from .result import Region
 
-__all__ = ["begins_at_place", "begins_at_time"]
+__all__ = ["begins_at_phase", "begins_at_place", "begins_at_time"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -49,11 +49,13 @@ _SHARES = np.diff(erf(np.array(_ENDS) / np.sqrt(2.0 * _VARIANCES[:, None])))
 _LOG_SHARES = np.log((1.0 - _ANY) * _SHARES + _ANY / _STEPS)
 # Three standard deviations as a logarithm of likelihoods.
 _CLEAR = 4.5
-# What trials have in common of what each would have in a region of its own.
-_SHARED = 0.8
+# What trials have in common of what each would have in a region of its own, which chance adds some to.
+_SHARED = 0.7
 _MOMENTS = 32
 # Places are told apart by this share of the body's length; along a long way, so many.
 _PART_OF_BODY, _MOST_PARTS = 0.5, 200
+# Parts of a cycle; a region has at most half of them.
+_PARTS_OF_CYCLE = 36
 
 
 def begins_at_time(comparison: Comparison, residual: Residual, paths: Sequence[Path | None]) -> Region | None:
@@ -78,7 +80,7 @@ def begins_at_time(comparison: Comparison, residual: Residual, paths: Sequence[P
     last = float(np.max(cells.time_s[counted]))
     moments = np.linspace(0.0, last, _MOMENTS + 1)[1:-1].tolist()
     seen = [
-        Cells.of(comparison, comparison.residual_of_beginnings(paths, moment, residual.tolerance), paths)
+        Cells.of(comparison, comparison.residual_of_beginnings(paths, [moment] * len(paths), residual.tolerance), paths)
         for moment in moments
     ]
     evidence = np.empty((len(moments), len(paths)))
@@ -135,10 +137,63 @@ def begins_at_place(comparison: Comparison, residual: Residual, paths: Sequence[
     return _region("position_y_m", cells, place, counted, start, end)
 
 
+def begins_at_phase(comparison: Comparison, residual: Residual, paths: Sequence[Path | None]) -> Region | None:
+    """Return the part of the field's cycle in which the model is wrong in the trials alike, None if there is none.
+
+    It ends beyond 360° where it goes across the cycle's end. A clock and an origin are fitted to what is before a trial
+    first comes to a part.
+
+    Parameters
+    ----------
+    comparison
+        The dataset, ready to be compared.
+    residual
+        How wrong the model is, the sensor's nuisances fitted to all.
+    paths
+        The model's.
+    """
+    cells = Cells.of(comparison, residual, paths)
+    counted = _tracked(cells, paths) & np.isfinite(cells.phase_deg)
+    if not counted.any():
+        return None
+    width = 360.0 / _PARTS_OF_CYCLE
+    # How far the field has turned: the cycle's phase with the whole cycles before, which a clock is never off by.
+    whole = np.round((360.0 * cells.frequency_Hz * cells.time_s - cells.phase_deg) / 360.0)
+    turned = cells.phase_deg + 360.0 * whole
+    seen, rows = [], []
+    for first in width * np.arange(_PARTS_OF_CYCLE):
+        before = counted & (turned < first)
+        last_s = np.full(len(paths), -1.0)
+        np.maximum.at(last_s, cells.trial[before], cells.time_s[before])
+        then = Cells.of(
+            comparison, comparison.residual_of_beginnings(paths, last_s.tolist(), residual.tolerance), paths
+        )
+        on = np.minimum((cells.phase_deg[counted] - first) % 360.0 // width, _PARTS_OF_CYCLE - 1)
+        part = np.where(before[counted], 0, 1 + on).astype(np.intp)
+        tally = np.zeros((len(paths), 1 + _PARTS_OF_CYCLE, _STEPS, len(CHANNELS)))
+        np.add.at(tally, (cells.trial[counted], part, _step(then.fresh[counted]), cells.channel[counted]), 1.0)
+        inside = np.cumsum(tally[:, 1:], axis=1)
+        past = inside[:, -1:] - inside
+        up_to = slice(0, _PARTS_OF_CYCLE // 2)
+        rows.append(_evidence(tally[:, :1], inside[:, up_to], past[:, up_to], recurs=True).T / comparison.alike)
+        seen.append(then)
+    best = _shared(np.concatenate(rows))
+    if best is None:
+        return None
+    start, parts = divmod(best, _PARTS_OF_CYCLE // 2)
+    low, high = width * start, width * (start + parts + 1)
+    return _region("cycle_phase_deg", seen[start], low + (cells.phase_deg - low) % 360.0, counted, low, high)
+
+
 def _counted(cells: Cells, paths: Sequence[Path | None]) -> Mask:
     """Return which numbers are of a trial that was run and a field that has turned by half a cycle, shape (n,)."""
+    return np.asarray(_tracked(cells, paths) & (cells.time_s * cells.frequency_Hz >= 0.5))
+
+
+def _tracked(cells: Cells, paths: Sequence[Path | None]) -> Mask:
+    """Return which numbers are of the track of a trial that was run, shape (n,)."""
     was_run = np.array([path is not None for path in paths])[cells.trial]
-    return np.asarray(was_run & ~cells.outcome & (cells.time_s * cells.frequency_Hz >= 0.5))
+    return np.asarray(was_run & ~cells.outcome)
 
 
 def _tally(cells: Cells, mask: Mask) -> Floats:
@@ -183,10 +238,28 @@ def _likeliest(tally: Floats) -> Floats:
     return most
 
 
-def _evidence(before: Floats, inside: Floats, past: Floats) -> Floats:
-    """Return Λ(S) but for a, shape (...), of tallies (..., steps, channels)."""
-    apart = np.einsum("...jc,j->...c", before, _LOG_SHARES[0]) + _likeliest(inside) + _likeliest(past)
-    return np.asarray(np.sum(apart - _likeliest(before + inside + past), axis=-1))
+def _evidence(before: Floats, inside: Floats, past: Floats, *, recurs: bool = False) -> Floats:
+    """Return Λ(S) but for a, shape (...), of tallies (..., steps, channels).
+
+    Parameters
+    ----------
+    before, inside, past
+        Tallies (..., steps, channels) that broadcast.
+    recurs
+        Whether what is in S comes again and again: then it is off by as much as what is past at least, and both count
+        as one where they have it otherwise.
+    """
+    apart = np.einsum("...jc,j->...c", before, _LOG_SHARES[0])
+    within, after, both = _likeliest(inside), _likeliest(past), _likeliest(inside + past)
+    split = within + after
+    if recurs:
+        split = np.where(_mean_step(inside) >= _mean_step(past), split, both)
+    return np.asarray(np.sum(apart + split - _likeliest(before + inside + past), axis=-1))
+
+
+def _mean_step(tally: Floats) -> Floats:
+    sums = np.einsum("...jc,j->...c", tally, np.arange(_STEPS))
+    return np.asarray(sums / np.maximum(tally.sum(axis=-2), 1.0), dtype=np.float64)
 
 
 def _shared(evidence: Floats) -> int | None:
