@@ -152,7 +152,7 @@ def _gradients(hypothesis: Hypothesis, point: Floats) -> Floats:
     for j in range(len(point)):
         below, above = hypothesis.low[j] - point[j], hypothesis.high[j] - point[j]
         way = above if above > -below else below
-        if slopes[j, j] == 0.0 and way != 0.0:
+        if not slopes[j].any() and way != 0.0:
             slopes[j, j] = (hypothesis.values(point + way * np.eye(len(point))[j]) - hypothesis.values(point))[j] / way
     return slopes
 

@@ -94,7 +94,7 @@ class StrayFieldGradient(Effect):
 
     @classmethod
     def to_fit(cls, values: Sequence[float]) -> tuple[float, ...]:
-        """Return the gradient, and an exponent whose values near zero are left out.
+        """Return the gradient, and the exponent beyond the coordinates that mean zero.
 
         Parameters
         ----------
