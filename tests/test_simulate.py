@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import io
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,7 +14,6 @@ from tumblers import (
     SimulationError,
     StaticField,
     _core,
-    atomic,
     preset_scenario,
     save_netcdf,
     simulate,
@@ -109,12 +107,12 @@ def test_a_save_that_fails_leaves_the_old_file(tmp_path: Path, monkeypatch: pyte
     path = tmp_path / "run.nc"
     path.write_bytes(b"old")
 
-    class Interrupted(io.BufferedWriter):
-        def write(self, data: bytes) -> int:
-            super().write(data[: len(data) // 2])
-            raise KeyboardInterrupt
+    def interrupted(self: Path, data: bytes) -> int:
+        with self.open("wb") as file:
+            file.write(data[: len(data) // 2])
+        raise KeyboardInterrupt
 
-    monkeypatch.setattr(atomic, "_begun", lambda path: Interrupted(io.FileIO(path.with_name("half"), "x")))
+    monkeypatch.setattr(Path, "write_bytes", interrupted)
     with pytest.raises(KeyboardInterrupt):
         save_netcdf(run, path)
     assert path.read_bytes() == b"old"

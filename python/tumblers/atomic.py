@@ -4,26 +4,23 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import ExitStack, contextmanager, suppress
+from collections.abc import Iterable, Mapping
+from contextlib import ExitStack, suppress
 from pathlib import Path
-from typing import BinaryIO
+from platform import node
 from uuid import uuid4
-
-try:
-    import fcntl
-except ModuleNotFoundError:  # Windows: what a killed process left stays there until someone removes it.
-    fcntl = None  # type: ignore[assignment]
+from zlib import crc32
 
 __all__ = ["is_unfinished", "write_files"]
 
-_UNFINISHED = re.compile(r"\.(.+)\.[0-9a-f]{32}\.tmp")
+# Behind the file's name: the machine and the process that write it, and a number of its own.
+_UNFINISHED = re.compile(r"\.(.+)\.([0-9a-f]{8})([0-9a-f]{8})[0-9a-f]{16}\.tmp")
 
 
 def write_files(contents: Mapping[Path, bytes | memoryview]) -> None:
     """Write all files or none: each is complete under another name before the first takes its own.
 
-    What an earlier call left of the same files when it was killed is removed.
+    What an earlier process of this machine left of the same files when it was killed is removed.
 
     Parameters
     ----------
@@ -36,8 +33,11 @@ def write_files(contents: Mapping[Path, bytes | memoryview]) -> None:
         A folder that is missing or cannot be written to, or a full disk.
     """
     _remove_abandoned(contents)
+    temporaries = {path: _unfinished(path) for path in contents}
     with ExitStack() as stack:
-        temporaries = {path: stack.enter_context(_written(path, content)) for path, content in contents.items()}
+        for path, temporary in temporaries.items():
+            stack.callback(temporary.unlink, missing_ok=True)
+            temporary.write_bytes(contents[path])
         for path, temporary in temporaries.items():
             os.replace(temporary, path)
 
@@ -53,48 +53,38 @@ def is_unfinished(path: Path) -> bool:
     return _UNFINISHED.fullmatch(path.name) is not None
 
 
-@contextmanager
-def _written(path: Path, content: bytes | memoryview) -> Iterator[Path]:
-    """Give the bytes under another name beside the file, which goes unless it was moved."""
-    with _begun(path) as file:
-        temporary = Path(file.name)
-        try:
-            file.write(content)
-            file.flush()
-            if fcntl is None:
-                # Windows moves no file that is open.
-                file.close()
-            yield temporary
-        finally:
-            temporary.unlink(missing_ok=True)
+def _unfinished(path: Path) -> Path:
+    """Return another name beside a file, which no other call has."""
+    return path.with_name(f".{path.name}.{_machine():08x}{os.getpid():08x}{uuid4().hex[:16]}.tmp")
 
 
-def _begun(path: Path) -> BinaryIO:
-    """Return a new file beside another one, locked: the system frees what a process locked, however that ends."""
-    while True:
-        temporary = path.with_name(f".{path.name}.{uuid4().hex}.tmp")
-        file = temporary.open("xb")
-        if fcntl is None:
-            return file
-        # Not every file system has locks; on one that has none, nobody takes the file for abandoned either.
-        with suppress(OSError):
-            fcntl.flock(file, fcntl.LOCK_EX)
-        # Until it was locked it looked abandoned to whoever writes the same file.
-        if temporary.exists():
-            return file
-        file.close()
+def _machine() -> int:
+    return crc32(node().encode())
 
 
 def _remove_abandoned(paths: Iterable[Path]) -> None:
-    """Remove what processes that are no more left of these files."""
-    if fcntl is None:
+    """Remove what processes of this machine that are no more left of these files."""
+    # Windows asks after a process in another way: there such a file stays until someone removes it.
+    if os.name == "nt":
         return
-    for path in paths:
+    wanted = set(paths)
+    for folder in {path.parent for path in wanted}:
         # What cannot be looked at or removed is in nobody's way: the file itself is written beside it.
         with suppress(OSError):
-            for entry in path.parent.iterdir():
+            for entry in folder.iterdir():
                 name = _UNFINISHED.fullmatch(entry.name)
-                if name is not None and name[1] == path.name:
-                    with suppress(OSError), entry.open("r+b") as file:
-                        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                        entry.unlink()
+                if name is None or folder / name[1] not in wanted or int(name[2], 16) != _machine():
+                    continue
+                if not _is_alive(int(name[3], 16)):
+                    entry.unlink(missing_ok=True)
+
+
+def _is_alive(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except (PermissionError, OverflowError):
+        # Someone else's, or no number of a process: nothing to remove.
+        pass
+    return True

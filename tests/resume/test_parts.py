@@ -61,7 +61,7 @@ def test_a_file_in_the_folders_place_is_refused(folder: Path) -> None:
 
 def test_what_a_killed_write_left_is_no_part_and_goes_with_them(folder: Path) -> None:
     folder.mkdir()
-    unfinished = folder / f".two.json.{'0' * 32}.tmp"
+    unfinished = folder / f".settings.json.{'0' * 32}.tmp"
     unfinished.write_text("{")
     kept = Parts(folder, SETTINGS)
     with pytest.raises(KeyboardInterrupt), kept.resumable():

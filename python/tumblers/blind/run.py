@@ -10,7 +10,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import NamedTuple
 
-from ..atomic import is_unfinished, write_files
+from ..atomic import write_files
 from ..check import thread_count
 from ..errors import InputError
 from ..progress import OnProgress, native_call
@@ -102,9 +102,8 @@ def _diagnose(folder: Path, threads: int) -> bool:
     from ..dataset import load
     from ..diagnosis import diagnose
 
-    # Those of what is written here now; those of a call that was killed would stay for ever.
-    for file in [folder / REPEAT, *filter(is_unfinished, folder.iterdir())]:
-        file.unlink(missing_ok=True)
+    # It is of what is written here now.
+    (folder / REPEAT).unlink(missing_ok=True)
     start = perf_counter()
     files: dict[Path, bytes | memoryview] = {}
     error = None
