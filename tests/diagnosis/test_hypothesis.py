@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from tumblers.diagnosis.descent import _MOST_STEP
 from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects.base import Effect
@@ -59,10 +60,13 @@ def test_a_pull_stays_in_a_field_at_rest_until_it_grows_with_the_frequency() -> 
         (effect,) = hypothesis.effects([0.5, 0.0, 0.0, power])
         return effect.edit(scenario).surroundings.force_N[0]
 
-    # Least squares keep off the ends of a range by a hair, and their derivatives take steps of up to 5e-2.
-    for power in (1e-10, 1e-3, 5e-2):
+    # Least squares keep off the ends of a range by a hair, and their derivatives take steps.
+    for power in (1e-10, 1e-3, _MOST_STEP):
         assert pull(still, power) == pull(still, 0.0) > 0.0
         assert pull(turning, power) == pull(turning, 0.0)
+        assert hypothesis.rests(np.array([0.5, 0.0, 0.0, power])).tolist() == [False, False, False, True]
+    assert not hypothesis.rests(np.array([0.5, 0.0, 0.0, 0.2])).any()
+    assert not hypothesis.rests(hypothesis.high).any()
     assert pull(still, 0.2) == 0.0
     powers = [pull(turning, power) for power in np.linspace(0.1, 1.0, 50)]
     assert np.all(np.diff(powers) < 0.0)

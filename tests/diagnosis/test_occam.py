@@ -9,7 +9,7 @@ from scipy.special import logsumexp
 from tumblers.diagnosis.comparison import Residual
 from tumblers.diagnosis.fit import Fit
 from tumblers.diagnosis.hypothesis import PRIOR_SIGMA, Hypothesis
-from tumblers.diagnosis.occam import log_occam, neutral_sets, unneeded
+from tumblers.diagnosis.occam import _ratios, log_occam, neutral_sets, unneeded
 from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects.catalogue import CATALOGUE
 
@@ -95,3 +95,18 @@ def test_it_is_the_mean_evidence_of_all_sets(names: tuple[str, ...], asked: tupl
 def test_an_effect_without_a_parameter_that_acts_has_the_empty_set() -> None:
     gradient = hypothesis_of("stray_field_gradient")
     assert neutral_sets(gradient.held(np.array([True, True, True, False]))) == [()]
+
+
+def test_an_exponent_that_rests_at_zero_is_neutral_and_costs_its_place_among_the_sets() -> None:
+    hypothesis, rng = hypothesis_of("stray_field_gradient"), np.random.default_rng(4)
+    slopes = rng.normal(size=(40, 4)) * (20.0, 3.0, 8.0, 0.0)
+    point = np.array([0.0, 0.4, 0.0, 0.0])
+    fit = Fit(hypothesis, point, NOTHING, 30.0, slopes, np.full(4, 0.01))
+    assert unneeded(fit, 1.0)[3]
+    ratios = dict(_ratios(fit, 1.0))
+    assert all((ratio == -np.inf) == (3 not in held) for held, ratio in ratios.items())
+    count = len(neutral_sets(hypothesis))
+    without = hypothesis.held(np.array([False, False, False, True]))
+    half = Fit(without, point, NOTHING, 30.0, slopes, np.full(4, 0.01))
+    expected = log_occam(half, 1.0) + np.log(len(neutral_sets(without)) / count)
+    assert log_occam(fit, 1.0) == pytest.approx(expected, rel=1e-12)

@@ -137,7 +137,7 @@ def _ends(rises: Callable[[list[tuple[_Side, float]]], list[float]], whole: dict
 def _gradients(hypothesis: Hypothesis, point: Floats) -> Floats:
     """Return the derivatives of the parameters by the coordinates, shape (p, p).
 
-    One that does not change beside the point has the slope to the farther end of its range.
+    A parameter that rests there has the slope to the farther end of its range.
     """
     step = 1e-6
     turns = [parameter.turns for kind in hypothesis.kinds for parameter in kind.parameters]
@@ -149,11 +149,10 @@ def _gradients(hypothesis: Hypothesis, point: Floats) -> Floats:
         moved = np.where(turns, (moved + _HALF_TURN) % (2.0 * _HALF_TURN) - _HALF_TURN, moved)
         columns.append(moved / signed)
     slopes = np.column_stack(columns)
-    for j in range(len(point)):
+    for j in np.flatnonzero(hypothesis.rests(point)).tolist():
         below, above = hypothesis.low[j] - point[j], hypothesis.high[j] - point[j]
         way = above if above > -below else below
-        if not slopes[j].any() and way != 0.0:
-            slopes[j, j] = (hypothesis.values(point + way * np.eye(len(point))[j]) - hypothesis.values(point))[j] / way
+        slopes[j, j] = (hypothesis.values(point + way * np.eye(len(point))[j]) - hypothesis.values(point))[j] / way
     return slopes
 
 

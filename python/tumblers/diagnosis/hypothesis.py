@@ -24,6 +24,8 @@ PRIOR_SIGMA = 0.5
 # second could explain as well. Chosen from twelve datasets with a known truth in which two effects were named: where
 # one was at work the second had won 2.4 to 7.4 over the best single one, where two were 20 or more.
 SECOND = 10.0
+# How far beside a coordinate is.
+_BESIDE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,6 +125,20 @@ class Hypothesis:
         starts, close = (np.where(those, 0.0, points) for points in (self.starts, self.close))
         starts, close = (points[np.any(points != 0.0, axis=1)] for points in (starts, close))
         return replace(self, low=low, high=high, starts=starts, close=close)
+
+    def rests(self, point: Floats) -> NDArray[np.bool_]:
+        """Return the free coordinates beside which no value changes, shape (p,): they mean the same for a while.
+
+        Parameters
+        ----------
+        point
+            As u, shape (p,).
+        """
+        # Towards the inside of the range.
+        signed = np.where(point + _BESIDE > self.high, -_BESIDE, _BESIDE)
+        here = self.values(point)
+        same = [bool(np.all(self.values(beside) == here)) for beside in point + np.diag(signed)]
+        return np.array(same) & (self.low < self.high) & (self.low <= point) & (point <= self.high)
 
     @property
     def names(self) -> tuple[str, ...]:

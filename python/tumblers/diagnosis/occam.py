@@ -20,13 +20,15 @@ ln Occam      = ln Z + cost/(2c) + ln (Σ_S Z_S / Z) - ln (number of sets)
 ```
 
 so that a parameter which the data know to be about zero costs its place among the sets alone, and one that they know to
-be something else costs what it does without a spike.
+be something else costs what it does without a spike. One that rests at neutral (`Hypothesis.rests`) has no slope of which
+the data could say anything: there it is neutral, and sets in which it is not have Z_S = 0.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import chain, combinations, product
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -114,7 +116,12 @@ def _ratios(fit: Fit, dispersion: float) -> list[tuple[tuple[int, ...], float]]:
     """Return the sets with ln Z_S - ln Z."""
     covariance, _, mean = _posterior(fit, dispersion)
     made = []
-    for chosen in neutral_sets(fit.hypothesis):
+    sets = neutral_sets(fit.hypothesis)
+    resting = set(np.flatnonzero(fit.hypothesis.rests(fit.point)).tolist()) & set(chain.from_iterable(sets))
+    for chosen in sets:
+        if not resting <= set(chosen):
+            made.append((chosen, -inf))
+            continue
         held = list(chosen)
         point, block = mean[held] / PRIOR_SIGMA, covariance[np.ix_(held, held)] / PRIOR_SIGMA**2
         away = float(point @ np.linalg.solve(block, point)) if held else 0.0

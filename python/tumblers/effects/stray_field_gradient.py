@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 __all__ = ["StrayFieldGradient"]
 
 _REFERENCE_HZ = 10.0
-# Coordinates of a fit up to this one mean an exponent of zero: where no field rotates 0⁰ is 1, and any power above
-# nothing is 0, so that a fit whose steps left zero would lose the pull there.
+# Coordinates of a fit up to this one mean an exponent of zero: where no field rotates 0⁰ is 1, and 0 to any power above
+# it is 0, so that a fit whose steps left zero would lose the pull there. It is twice the longest step of a derivative.
 _EVEN = 0.3
 
 
