@@ -20,8 +20,8 @@ ln Occam      = ln Z + cost/(2c) + ln (Σ_S Z_S / Z) - ln (number of sets)
 ```
 
 so that a parameter which the data know to be about zero costs its place among the sets alone, and one that they know to
-be something else costs what it does without a spike. One that rests at neutral (`Hypothesis.rests`) has no slope of which
-the data could say anything: there it is neutral, and sets in which it is not have Z_S = 0.
+be something else costs what it does without a spike. One that rests at neutral (`Hypothesis.rests`) has no slope that
+the data could speak of: there it is neutral, and sets in which it is not have Z_S = 0.
 """
 
 from __future__ import annotations
