@@ -133,6 +133,10 @@ class Search:
         made = likeliest_first([shaken(self.fitter, made[0], self.seed, self.tell), *made[1:]])
         if len(made[0].names) == 1:
             return made
+        if set(made[0].names) != set(found[0].names):
+            # The longer steps put another pair first: what may stand in the place of this one's was not looked for.
+            singles, pairs = ([c for c in made if len(c.names) == count] for count in (1, 2))
+            made = likeliest_first([*singles, *self._exchanged(pairs, singles)])
         single = likeliest(contender for contender in made if len(contender.names) == 1)
         return likeliest_first([nested(self.fitter, single, made[:1]), *(c for c in made if c is not single)])
 
