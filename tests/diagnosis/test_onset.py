@@ -128,8 +128,8 @@ def test_what_acts_all_along_sets_in_nowhere(effect: str, vector: tuple[float, .
     residual = comparison.residual(paths)
     # There is a gap.
     assert np.mean(residual.over(range(len(paths))) ** 2) > 1.4
-    assert begins_at_time(comparison, residual, paths) is None
-    assert begins_at_place(comparison, residual, paths) is None
+    for begins in (begins_at_time, begins_at_place, begins_at_phase):
+        assert begins(comparison, residual, paths) is None
 
 
 @pytest.mark.parametrize("seed", [4, 5])
