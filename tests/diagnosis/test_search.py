@@ -61,6 +61,40 @@ def test_what_longer_steps_found_counts_by_what_it_is_in_the_right_ones(monkeypa
     assert again.total > best.total + NEAR
 
 
+@pytest.mark.parametrize(("named", "first", "exchanged"), [(True, 1, 1), (True, 0, 0), (False, 1, 0)])
+def test_either_of_a_pair_that_only_the_right_steps_put_first_is_exchanged(
+    named: bool, first: int, exchanged: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fitter = coarse_lab(SizeError(length_factor=1.1), MagnetizationStrength(factor=0.7))
+    search = Search(fitter, [CATALOGUE[name] for name in MANY_KINDS[:3]], quiet, 0)
+    fitter.take_likeliest_noise(())
+    singles = search._singles(of_nominal(fitter))
+    pairs = Pairs(fitter, search.possible, {})
+    pairs.add(singles[0], singles)
+    ranked = pairs.likeliest_first()
+    assert len(ranked) == 2
+    # What the longer steps put first, before what leads in the right ones.
+    found = [ranked[first], *(pair for pair in ranked if pair is not ranked[first]), *singles]
+    called: list[tuple[Sequence[Contender], Sequence[Contender]]] = []
+
+    def spied(pairs: Sequence[Contender], singles: Sequence[Contender]) -> list[Contender]:
+        called.append((pairs, singles))
+        return list(pairs)
+
+    monkeypatch.setattr(search, "_exchanged", spied)
+    monkeypatch.setattr(search, "_is_named", lambda *_: named)
+    monkeypatch.setattr("tumblers.diagnosis.search.is_wanting", lambda *_: False)
+    made = search._in_short_steps(found)
+    assert made[0].names == ranked[0].names
+    assert {contender.names for contender in made} == {contender.names for contender in found}
+    assert len(made) == len(found)
+    assert len(called) == exchanged
+    for those, alone in called:
+        assert those[0].names == ranked[0].names
+        assert len(those) == 2
+        assert {len(contender.names) for contender in alone} == {1}
+
+
 def test_where_the_nominal_model_is_right_too_what_leads_is_held_against_its_own_noise() -> None:
     dataset = measure(plan(PLANS[:3]), seed=3)
     fitter = Fitter(Comparison(dataset, Simulator(dataset)))

@@ -48,8 +48,9 @@ def page_of(scores: Scores) -> str:
         "shows what it sees again; a pair of effects that does not show in three labs is drawn again. An effect counts "
         "as named first where it leads the effects of the diagnosis, whatever the verdict; as truly tied where the "
         "diagnosis itself says that it cannot tell it from the first, and the first's estimate shows with the lab's "
-        f"numbers what the truth, in its own form, shows with the world's, to {TIE_SIGMA:g} sigma, by simulation, once "
-        "a standard deviation of each nominal number has taken what it can of what they differ by, as of a strength.",
+        f"numbers what the truth, in its own form, shows with the world's, to {TIE_SIGMA:g} sigma, by simulation, "
+        "after the sensor's tolerances and a standard deviation of each nominal number have taken what they can of the "
+        "difference, as they do of a cause's strength.",
         "## What has to hold",
         _table(
             ("", "found", "wanted", "of", "met"),

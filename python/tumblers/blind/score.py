@@ -25,8 +25,8 @@ __all__ = ["Criterion", "Scores", "TieCheck", "score", "score_records"]
 FORMAT = "tumblers-blind-scores/1"
 STRENGTH_BINS = ((0.0, 1.0), (1.0, 3.0), (3.0, 10.0), (10.0, inf))
 PROBABILITY_BINS = ((0.0, 0.2), (0.2, 0.4), (0.4, 0.6), (0.6, 0.8), (0.8, 1.0))
-# An effect named for another one is a tie where what it says differs from the true world by less than the noise, but
-# for what the lab's numbers may be off.
+# An effect named for another one is a tie where what it says differs from the true world by less than the noise,
+# after the sensor's tolerances and what the lab's numbers may be off have taken what they can of that.
 TIE_SIGMA = 1.0
 _SLOWEST_S = 180.0
 # Whether a cause acts as the catalogue has it.

@@ -11,7 +11,7 @@ ln L(k; v) = Σ_j k_j ln[(1 - ε) P(N(0, v) in step j) + ε/J],      v >= 1 the 
 ```
 
 a is how many neighbouring numbers count as one. What comes after S need not be right: a robot that was held up may stay
-off its course. A part of the cycle comes again and again: S is off by no less than what is past it,
+off its course. A part of the cycle comes again and again, so that S is taken to be off by no less than what is past it:
 
 ```text
 ln L(k') + ln L(k'')  becomes  ln L(k' + k'')  where the mean step of k' is below that of k''.
@@ -55,10 +55,11 @@ _SHARES = np.diff(erf(np.array(_ENDS) / np.sqrt(2.0 * _VARIANCES[:, None])))
 _LOG_SHARES = np.log((1.0 - _ANY) * _SHARES + _ANY / _STEPS)
 # Three standard deviations as a logarithm of likelihoods.
 _CLEAR = 4.5
-# What trials have in common of what each would have in a region of its own, which chance adds some to. In three blind
-# seeds (71, 83, 97) moments and places of causes that have one had 0.74 and more, the axes on which those causes
-# have none 0.65 and less: a choice between the two, made with the answers known. Causes that act along the whole
-# run come as high at times, where they first show in one part of a cycle.
+# The least share, Λ of the common region over the sum of Λ of each trial's own best: chance adds to the latter. In
+# three blind seeds (71, 83, 97) it was 0.74 and more of moments and places in which a cause set in, and 0.65 and less
+# of those of causes that set in along another axis: a choice between the two, made with the answers known. Parts of the
+# cycle were not measured so: causes that act along the whole run reach it there too, at times, by where they first
+# show.
 _SHARED = 0.7
 _MOMENTS = 32
 # Places are told apart by this share of the body's length; along a long way, so many.

@@ -133,10 +133,14 @@ class Search:
         made = likeliest_first([shaken(self.fitter, made[0], self.seed, self.tell), *made[1:]])
         if len(made[0].names) == 1:
             return made
-        if set(made[0].names) != set(found[0].names):
-            # The longer steps put another pair first: what may stand in the place of this one's was not looked for.
-            singles, pairs = ([c for c in made if len(c.names) == count] for count in (1, 2))
-            made = likeliest_first([*singles, *self._exchanged(pairs, singles)])
+        singles, pairs = ([c for c in made if len(c.names) == count] for count in (1, 2))
+        wanting = is_wanting(self.comparison, singles[0].residual)
+        # Where in longer steps another led, it was the effects of that which were exchanged.
+        if set(pairs[0].names) != set(found[0].names) and (wanting or self._is_named(pairs[0], singles[0])):
+            exchanged = self._exchanged(pairs, singles)
+            if exchanged[0].names != pairs[0].names:
+                exchanged[0] = shaken(self.fitter, exchanged[0], self.seed, self.tell)
+            made = likeliest_first([*singles, *exchanged])
         single = likeliest(contender for contender in made if len(contender.names) == 1)
         return likeliest_first([nested(self.fitter, single, made[:1]), *(c for c in made if c is not single)])
 
@@ -290,9 +294,11 @@ class Search:
         # However little the best leaves: against a sharper noise another may leave as little.
         if strong:
             found = _kept(settled(self.fitter, self._refined(found, _PAIRS_REFINED), self.tell), found)
-        # A pair that would not be named beside a single effect that leaves no gap is no answer.
-        named = found[0].total < singles[0].total - 2.0 * self.comparison.alike * SECOND
-        return self._exchanged(found, singles) if wanting or named else found
+        return self._exchanged(found, singles) if wanting or self._is_named(found[0], singles[0]) else found
+
+    def _is_named(self, pair: Contender, single: Contender) -> bool:
+        """Return whether a pair would be named beside one effect; else, where that leaves no gap, it is no answer."""
+        return pair.total < single.total - 2.0 * self.comparison.alike * SECOND
 
     def _exchanged(self, found: Sequence[Contender], singles: Sequence[Contender]) -> list[Contender]:
         """Exchange either effect of the best pair: one may be the answer to another that is wrong."""
