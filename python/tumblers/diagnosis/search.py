@@ -141,8 +141,8 @@ class Search:
             if exchanged[0].names != pairs[0].names:
                 exchanged[0] = shaken(self.fitter, exchanged[0], self.seed, self.tell)
             made = likeliest_first([*singles, *exchanged])
-        single = likeliest(contender for contender in made if len(contender.names) == 1)
-        return likeliest_first([nested(self.fitter, single, made[:1]), *(c for c in made if c is not single)])
+        single = nested(self.fitter, singles[0], made[:1])
+        return likeliest_first([single, *(c for c in made if c is not singles[0])])
 
     def _far_and_wide(self, nominal: Contender) -> list[Contender]:
         """Search over the whole ranges, add second effects, look for what does the same; the likeliest first."""
