@@ -85,6 +85,20 @@ def test_one_of_a_pair_is_exchanged_while_the_other_stays() -> None:
         assert_array_equal(counterpart.point[:2], best.point[2:])
 
 
+def test_a_counterpart_is_looked_for_along_each_parameter_alone_too() -> None:
+    tilt = SubstrateTilt(slope_y_deg=6.0)
+    search = _search(tilt)
+    found = counterparts(search.fitter, _at(search, tilt), SubstrateTilt, search.possible)
+    gradients = [c.point for c in found if c.hypothesis.names == ("stray_field_gradient",)]
+    together, alone = sorted(gradients, key=np.count_nonzero, reverse=True)
+    assert np.count_nonzero(together) > 1
+    # Of its numbers the one along y does what the tilt does.
+    assert np.flatnonzero(alone).tolist() == [1]
+    # An effect of one parameter is there once at most.
+    names = [c.hypothesis.names for c in found]
+    assert names.count(("friction_coefficient",)) <= 1
+
+
 def test_a_search_keeps_what_does_the_same_better_than_the_best_does() -> None:
     truth = StrayFieldGradient(gradient_T_per_m=(0.0, 0.1, 0.0))
     search = _search(truth)

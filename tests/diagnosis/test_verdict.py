@@ -42,6 +42,9 @@ def contender(name: str, left: float, probability: float) -> Contender:
         (False, 1.0, 0.2, False, "unexplained"),
         # Of two hypotheses each has half of what is shared by all: that alone is no doubt.
         (True, 1.0, 0.5 * LAPSE, True, "explained"),
+        # Nothing is more probable than what is likeliest by itself.
+        (True, 1.7, 0.8, True, "no_gap"),
+        (False, 1.7, 0.8, True, "explained"),
     ],
 )
 def test_a_likelier_effect_is_named_where_the_nominal_model_leaves_a_gap_against_either_noise(
@@ -106,6 +109,11 @@ def test_between_what_evidence_ties_trials_left_out_decide(
         )
 
 
+def parted(_other: Contender) -> float:
+    """Say that against the noise around another the best leads by much, too."""
+    return 1e3
+
+
 def compared(tracked: int, alike: float = 1.0) -> SimpleNamespace:
     """Return a comparison of one trial, of whose numbers so many are of a track and the others outcomes."""
     return SimpleNamespace(readers=(None,), floors=(SimpleNamespace(tracked=tracked, size=COUNT),), alike=alike)
@@ -117,7 +125,7 @@ def test_an_outcome_parts_as_much_as_it_counts(alike: float) -> None:
     other = replace(contender("stray_field_gradient", 0.8, 0.1), log_likelihood=-20.0, log_evidence=-20.0)
     # Of all numbers one outcome differs, by five standard deviations: 12.5 of likelihood, as it counts for itself.
     other.residual.trials[0][-1] += 5.0
-    found = ties(compared(COUNT - 1, alike), Attribution((best, other), 8.0, False), best)  # type: ignore[arg-type]
+    found = ties(compared(COUNT - 1, alike), Attribution((best, other), 8.0, False), best, parted)  # type: ignore[arg-type]
     assert found == {"substrate_tilt": () if alike == 8.0 else ("stray_field_gradient",)}
 
 
@@ -143,8 +151,38 @@ def test_what_is_about_as_likely_or_says_the_same_is_tied_however_parsimonious_t
     other = replace(contender("stray_field_gradient", sigmas, 0.1), log_likelihood=-behind, log_evidence=evidence)
     attribution = Attribution((best, other), 8.0, False)
     comparison = compared(tracked)
-    found = ties(comparison, attribution, best)  # type: ignore[arg-type]
+    found = ties(comparison, attribution, best, parted)  # type: ignore[arg-type]
     assert found == {"substrate_tilt": ("stray_field_gradient",) if tied else ()}
+
+
+@pytest.mark.parametrize(
+    ("behind", "evidence", "around_the_other", "tied"),
+    [
+        # Against the noise around itself the best leads by 10, against that around the other by 5, and by 7.
+        (10.0, 10.0, 5.0, True),
+        (10.0, 10.0, 7.0, False),
+        # There the other has fewer parameters, by 3; parsimony that speaks for the best parts nothing.
+        (10.0, 7.0, 7.0, True),
+        (10.0, 13.0, 5.0, True),
+        (10.0, 13.0, 7.0, False),
+        # It is too far behind to be asked.
+        (20.0, 20.0, 5.0, False),
+    ],
+)
+def test_what_leads_against_its_own_noise_alone_is_tied(
+    behind: float, evidence: float, around_the_other: float, tied: bool
+) -> None:
+    best = contender("substrate_tilt", 0.8, 0.8)
+    other = replace(contender("stray_field_gradient", 1.8, 0.1), log_likelihood=-behind, log_evidence=-evidence)
+    asked = []
+
+    def lead(against: Contender) -> float:
+        asked.append(against)
+        return 2.0 * 8.0 * around_the_other
+
+    found = ties(compared(COUNT), Attribution((best, other), 8.0, False), best, lead)  # type: ignore[arg-type]
+    assert found == {"substrate_tilt": ("stray_field_gradient",) if tied else ()}
+    assert asked == ([other] if behind < 15.0 else [])
 
 
 @pytest.mark.parametrize(
@@ -167,7 +205,7 @@ def test_what_does_little_of_what_a_weak_effect_does_is_not_tied_with_it(
         for name, sigmas, likelihood in zip(names, left, likelihoods, strict=True)
     )
     comparison = compared(COUNT)
-    found = ties(comparison, Attribution((best, *others), 8.0, False), best)  # type: ignore[arg-type]
+    found = ties(comparison, Attribution((best, *others), 8.0, False), best, parted)  # type: ignore[arg-type]
     assert found == {"substrate_tilt": tied}
 
 
@@ -189,7 +227,7 @@ def test_either_of_a_pair_is_tied_with_what_does_the_same_beside_the_other() -> 
         for names, likelihood in likelihoods.items()
     ]
     comparison = compared(COUNT)
-    found = ties(comparison, Attribution(tuple(made), 8.0, False), made[0])  # type: ignore[arg-type]
+    found = ties(comparison, Attribution(tuple(made), 8.0, False), made[0], parted)  # type: ignore[arg-type]
     assert found == {"substrate_tilt": ("draft_angle",), "size_error": ()}
 
 

@@ -11,10 +11,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..progress import OnPhase
-from .contender import Contender, likeliest_first, of_nominal
+from .contender import Contender, likeliest, likeliest_first, of_nominal
+from .counterpart import counterparts
 from .fitter import Fitter
 from .hypothesis import SECOND
-from .own_noise import MOST_OWN, OWN, again, against_the_best, by_itself, each_by_itself, settled
+from .own_noise import MOST_OWN, OWN, again, against_the_best, by_itself, each_by_itself, settled, settled_at
 from .pairs import AS_GOOD, nested
 from .sparse import as_far
 
@@ -118,4 +119,17 @@ def _equally_far(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase)
             alone = made[k] if made[k].settled else by_itself(fitter, made[k], evaluations=1)
             made[k] = nested(fitter, alone, [c for c in made if len(c.names) > 1])
         made[k] = as_far(fitter, made[k], alike)
+    for k in singles[1:]:
+        made[k] = _from_counterparts(fitter, made[k], made[singles[0]])
     return likeliest_first(made)
+
+
+def _from_counterparts(fitter: Fitter, contender: Contender, best: Contender) -> Contender:
+    """Fit an effect also from where it does what the best one does in the steps and the noise of the moment."""
+    assert contender.fit is not None
+    assert best.fit is not None
+    (kind,) = best.fit.hypothesis.kinds
+    for c in counterparts(fitter, best, kind, [contender.fit.hypothesis]):
+        from_there = as_far(fitter, settled_at(fitter, c.hypothesis, c.point), fitter.comparison.alike)
+        contender = likeliest([contender, from_there])
+    return contender

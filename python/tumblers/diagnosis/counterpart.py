@@ -9,7 +9,8 @@ t_s = r(R + s E) - r(R),      q_s = argmin_q |t_s - s J q|²
 ```
 
 is about where the other does what the first does (Gauss and Newton's step from neutral, towards another model's motion
-and not towards the data).
+and not towards the data). So it is with each of the other's parameters alone: most causes need one or two numbers, and
+with all of them a fit may end where one stands for what the linear step got wrong of another.
 
 What does about as well there is fitted to the data from there: of two effects that do the same, neither is to lead
 because the other was looked for in the wrong place.
@@ -107,7 +108,9 @@ def _add_counterparts(
         # All against the noise around the contender.
         nominal, here = fitter.nominal()[1], fitter.again(best.fit).cost + best.step_credit
         worst = here + AS_GOOD * max(nominal - here, 0.0)
-        near = [c for c in those if c.cost < worst][:_FITTED]
+        near = [c for c in those if c.cost < worst]
+        few = list(dict.fromkeys(c.hypothesis.names for c in near))[:_FITTED]
+        near = [c for c in near if c.hypothesis.names in few]
         fits = [fitter.fit(c.hypothesis, c.point, evaluations=_POINTS) for c in near]
         for fit in [fit for fit in fits if _is_better(fitter, fit, made.get(frozenset(fit.hypothesis.names)))]:
             # Each against its own.
@@ -128,6 +131,8 @@ def counterparts(
     fitter: Fitter, contender: Contender, kind: type[Effect], possible: Sequence[Hypothesis]
 ) -> list[Counterpart]:
     """Return the effects that do about what one effect of a contender does, the likeliest first.
+
+    An effect is there by all of its parameters, and by the one of them that does it best alone.
 
     The noise is taken around the contender, and stays.
 
@@ -157,14 +162,14 @@ def counterparts(
     for other in others:
         hypothesis = rest[0] + other if rest else other
         base = np.concatenate([point[~mine], np.zeros(len(other.neutral))])
-        guesses = _guesses(fitter, hypothesis, base, len(other.neutral), weights, here, wanted)
-        costs = [
-            fitter.cost(r, p) + step_credit(fitter, hypothesis.effects(p))
-            for r, p in zip(fitter.residuals(hypothesis, guesses), guesses, strict=True)
-        ]
-        if costs:
-            best = int(np.argmin(costs))
-            found.append(Counterpart(costs[best], hypothesis, guesses[best]))
+        for guesses in _guesses(fitter, hypothesis, base, len(other.neutral), weights, here, wanted):
+            costs = [
+                fitter.cost(r, p) + step_credit(fitter, hypothesis.effects(p))
+                for r, p in zip(fitter.residuals(hypothesis, guesses), guesses, strict=True)
+            ]
+            if costs:
+                best = int(np.argmin(costs))
+                found.append(Counterpart(costs[best], hypothesis, guesses[best]))
     return sorted(found, key=lambda counterpart: counterpart.cost)
 
 
@@ -176,8 +181,8 @@ def _guesses(
     weights: Floats,
     here: Floats,
     wanted: Sequence[Floats],
-) -> list[Floats]:
-    """Return by share where the last parameters do what is wanted, where they can.
+) -> tuple[list[Floats], list[Floats]]:
+    """Return by share where the last parameters do what is wanted, where they can: all of them, and each alone.
 
     Parameters
     ----------
@@ -202,12 +207,17 @@ def _guesses(
     table = np.column_stack(
         [(weights * r.over(fitter.trials) - here) / h for r, h in zip(changed, signed, strict=True)]
     )
-    made = []
-    for share, target in zip(_SHARES, wanted, strict=True):
-        moves = np.linalg.lstsq(table, target, rcond=1e-6)[0]
-        left = float(np.sum((target - table @ moves) ** 2))
-        if left < (1.0 - _EXPLAINED) * float(np.sum(target**2)):
-            guess = base.copy()
-            guess[free] += moves / share
-            made.append(np.clip(guess, hypothesis.low, hypothesis.high))
-    return made
+    together, alone = list(range(len(free))), [[j] for j in range(len(free))] if len(free) > 1 else []
+
+    def where(those: list[int]) -> list[Floats]:
+        made = []
+        for share, target in zip(_SHARES, wanted, strict=True):
+            moves = np.linalg.lstsq(table[:, those], target, rcond=1e-6)[0]
+            left = float(np.sum((target - table[:, those] @ moves) ** 2))
+            if left < (1.0 - _EXPLAINED) * float(np.sum(target**2)):
+                guess = base.copy()
+                guess[[free[j] for j in those]] += moves / share
+                made.append(np.clip(guess, hypothesis.low, hypothesis.high))
+        return made
+
+    return where(together), [guess for those in alone for guess in where(those)]

@@ -29,6 +29,7 @@ from .localise import localise
 from .loss import robust_cost
 from .next_trial import in_one_step, next_trials
 from .overlay import overlays
+from .own_noise import lead_around
 from .posterior import samples
 from .predictive import is_right
 from .result import EffectEstimate, HeatMap, Interval, NextTrial, RankedHypothesis, Region, TrialFloor
@@ -164,7 +165,7 @@ class _Conclusion:
         verdict, chosen = judge(comparison, attribution, self.stands(best))
         if chosen is not best:
             gap = shrink(self.fitter, nominal, self.seed)
-        tied = ties(comparison, attribution, chosen)
+        tied = ties(comparison, attribution, chosen, lambda other: lead_around(self.fitter, chosen, other))
 
         estimates, shown = self._estimates(chosen, tied), overlays(self.fitter, nominal, self.held_out(chosen), chosen)
         # What counts as the nominal model has its evidence but no probability of its own.

@@ -35,6 +35,7 @@ __all__ = [
     "beside",
     "by_itself",
     "each_by_itself",
+    "lead_around",
     "settled",
     "settled_at",
 ]
@@ -259,6 +260,27 @@ def _says_the_same(fitter: Fitter, contender: Contender, best: Contender, lent: 
     """
     own = beside(fitter, contender, contender)
     return own.total - beside(fitter, best, contender).total < lent.total - best.total + CLEAR
+
+
+def lead_around(fitter: Fitter, contender: Contender, other: Contender) -> float:
+    """Return by how much a contender's total is less than another's against the noise around that; the noise stays.
+
+    Parameters
+    ----------
+    fitter
+        Of the dataset.
+    contender, other
+        Neither is the nominal model. The contender may follow the other's noise; the other has.
+    """
+    assert contender.fit is not None
+    floors = fitter.comparison.floors
+    theirs = beside(fitter, other, other)
+    mine = beside(fitter, contender, other)
+    hypothesis, steps = contender.fit.hypothesis, contender.fit.steps
+    fit = fitter.fit(hypothesis, contender.point, evaluations=POLISH_POINTS, steps=steps)
+    least = min(mine.total, of_fit(fitter, fit).total)
+    fitter.comparison.floors = floors
+    return theirs.total - least
 
 
 def beside(fitter: Fitter, contender: Contender, around: Contender) -> Contender:

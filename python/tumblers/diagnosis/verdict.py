@@ -9,6 +9,7 @@ import numpy as np
 from .attribute import ROUGH, Attribution
 from .comparison import Comparison
 from .contender import Contender
+from .own_noise import NEAR
 from .predictive import is_right
 from .result import Verdict
 
@@ -37,6 +38,8 @@ def judge(comparison: Comparison, attribution: Attribution, foretold: bool) -> t
     nominal, best = attribution.nominal, attribution.contenders[0]
     # What is wide enough around the nominal model hides a gap: where another is likelier, against its noise too.
     doubtful = attribution.doubt > _LEAST_DOUBT and is_right(comparison, nominal.residual)
+    # Nothing is named that is less probable than that there is nothing.
+    doubtful = doubtful or nominal.probability >= best.probability
     if attribution.nominal_is_right and (not best.names or doubtful):
         return "no_gap", nominal
     if not best.names:
@@ -71,10 +74,13 @@ def refused(
     return ()
 
 
-def ties(comparison: Comparison, attribution: Attribution, chosen: Contender) -> dict[str, tuple[str, ...]]:
+def ties(
+    comparison: Comparison, attribution: Attribution, chosen: Contender, lead: Callable[[Contender], float]
+) -> dict[str, tuple[str, ...]]:
     """Return for each effect of the chosen set those that these trials cannot tell apart from it.
 
     Parsimony may prefer one to another that has more parameters: where likelihood alone does not, that is a tie still.
+    So it is where the noise around the other, of which nobody knows that it is not the right one, does not part them.
     What does little of what the effect does is not tied with it, however little that is; nor is anything with an effect
     that does nothing.
 
@@ -86,6 +92,9 @@ def ties(comparison: Comparison, attribution: Attribution, chosen: Contender) ->
         Every hypothesis.
     chosen
         The one that is reported.
+    lead
+        By how much the objective of the one that is reported is less than another's, both against the noise around
+        that.
     """
     trials = range(len(comparison.readers))
     said = chosen.residual.over(trials)
@@ -107,7 +116,12 @@ def ties(comparison: Comparison, attribution: Attribution, chosen: Contender) ->
             # What either would lose on average if the other were right.
             apart = float(np.sum(weights * (other.residual.over(trials) - said) ** 2)) / (2.0 * attribution.dispersion)
             behind = chosen.log_likelihood - other.log_likelihood
-            if min(chosen.log_evidence - other.log_evidence, behind, apart) < limit:
+            parsimony = chosen.log_evidence - other.log_evidence - behind
+            least = min(behind + parsimony, behind, apart)
+            if least >= limit and 2.0 * attribution.dispersion * behind < NEAR:
+                there = lead(other) / (2.0 * attribution.dispersion)
+                least = min(there + parsimony, there)
+            if least < limit:
                 (instead,) = names - kept
                 out[name].append(instead)
     return {name: tuple(others) for name, others in out.items()}
