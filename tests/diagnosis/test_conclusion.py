@@ -8,20 +8,21 @@ import numpy as np
 import pytest
 
 from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.conclusion import _equally_far, concluded
+from tumblers.diagnosis.conclusion import _equally_far, _from_counterparts, concluded
 from tumblers.diagnosis.contender import Contender, of_fit, of_nominal
 from tumblers.diagnosis.fitter import Fitter
 from tumblers.diagnosis.hypothesis import SECOND
-from tumblers.diagnosis.own_noise import against_the_best, beside, settled_at
+from tumblers.diagnosis.own_noise import against_the_best, beside, lead_around, settled_at
 from tumblers.diagnosis.search import Search
 from tumblers.diagnosis.simulator import LONGEST_STEP_S, Simulator
 from tumblers.diagnosis.thresholds import CLEAR
 from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.effects.size_error import SizeError
+from tumblers.effects.stray_field_gradient import StrayFieldGradient
 from tumblers.effects.substrate_tilt import SubstrateTilt
 from tumblers.effects.viscous_drag import ViscousDrag
 
-from .lab import LYING, coarse_lab, measure, plan, quiet, sliding_factor
+from .lab import LYING, PLANS, coarse_lab, measure, plan, quiet, sliding_factor
 
 
 def test_the_leader_is_held_in_a_step_that_is_short_enough_for_it() -> None:
@@ -90,3 +91,37 @@ def test_what_may_be_named_is_fitted_as_far_though_pairs_fit_better(monkeypatch:
     # Neutral effects explain nothing.
     assert not any(contender.names in fitted for contender in far_off)
     assert sum(len(names) > 1 for names in fitted) == 2
+
+
+def _tilt_and_gradient() -> tuple[Fitter, Contender, Contender]:
+    """Return what a gradient made, at its best as a tilt, and a gradient where a search may leave it."""
+    truth = StrayFieldGradient(gradient_T_per_m=(0.0, 0.1, 0.0))
+    dataset = measure(plan(PLANS[:3]), (truth,), seed=3)
+    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
+    tilt, gradient = Search(fitter, [SubstrateTilt, StrayFieldGradient], quiet, 0).possible
+    best = settled_at(fitter, tilt, np.array([0.0, -0.67]), evaluations=6)
+    return fitter, best, settled_at(fitter, gradient, np.array([0.0, 0.4, -0.3, 0.0]))
+
+
+def test_what_ended_beside_its_valley_is_fitted_from_where_it_does_what_the_best_does() -> None:
+    fitter, best, stuck = _tilt_and_gradient()
+    found = _from_counterparts(fitter, stuck, best)
+    assert stuck.total > best.total + 100.0
+    assert found.total < best.total + CLEAR
+    (gradient,) = found.effects
+    assert isinstance(gradient, StrayFieldGradient)
+    # The noise leaves it that much.
+    assert gradient.gradient_T_per_m[1] == pytest.approx(0.1, rel=0.15)
+    # What is as good already stays.
+    assert _from_counterparts(fitter, found, best).total <= found.total
+
+
+def test_a_lead_around_another_is_that_against_one_noise_with_both_as_good_as_they_can_be_there() -> None:
+    fitter, best, stuck = _tilt_and_gradient()
+    floors = fitter.comparison.floors
+    lead = lead_around(fitter, best, stuck)
+    assert fitter.comparison.floors is floors
+    theirs, mine = beside(fitter, stuck, stuck).total, beside(fitter, best, stuck).total
+    # The best may follow the other's noise, which the other has followed.
+    assert lead >= theirs - mine > 100.0
+    assert lead_around(fitter, best, best) >= 0.0

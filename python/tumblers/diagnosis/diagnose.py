@@ -168,8 +168,8 @@ class _Conclusion:
         tied = ties(comparison, attribution, chosen, lambda other: lead_around(self.fitter, chosen, other))
 
         estimates, shown = self._estimates(chosen, tied), overlays(self.fitter, nominal, self.held_out(chosen), chosen)
-        # What counts as the nominal model has its evidence but no probability of its own.
-        by_probability = sorted(attribution.contenders, key=lambda contender: contender.probability == 0.0)
+        # What counts as the nominal model has left it its probability, not its evidence.
+        by_probability = sorted(attribution.contenders, key=lambda contender: -contender.probability)
         ranking = tuple(self._ranked(contender) for contender in by_probability)
         floors, proposed = self._floors(chosen), self._next(chosen, tied, tell)
         tell("where the gap lies", 0, 2)
