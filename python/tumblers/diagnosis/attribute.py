@@ -91,7 +91,17 @@ class Attribution:
     @property
     def doubt(self) -> float:
         """The nominal model's probability but for its shares of `LAPSE`, which are large where hypotheses are few."""
-        return self.nominal.probability - self._lapse(self.nominal)
+        return self.beyond_lapse(self.nominal)
+
+    def beyond_lapse(self, contender: Contender) -> float:
+        """Return a contender's probability but for its share of `LAPSE`.
+
+        Parameters
+        ----------
+        contender
+            One of them.
+        """
+        return contender.probability - self._lapse(contender)
 
     def _lapse(self, contender: Contender) -> float:
         """Return a contender's share of `LAPSE`; what counts as the nominal model has left it its own."""
@@ -109,7 +119,7 @@ class Attribution:
         refused
             Their names.
         """
-        above = [(c.probability - self._lapse(c)) * (REFUSED if c.names in refused else 1.0) for c in self.contenders]
+        above = [self.beyond_lapse(c) * (REFUSED if c.names in refused else 1.0) for c in self.contenders]
         made = [
             replace(
                 c,

@@ -12,19 +12,19 @@ import numpy as np
 
 from ..progress import OnPhase
 from .contender import Contender, likeliest, likeliest_first, of_nominal
-from .counterpart import counterparts
+from .counterpart import as_good
 from .fitter import Fitter
 from .hypothesis import SECOND
 from .own_noise import MOST_OWN, OWN, again, against_the_best, by_itself, each_by_itself, settled, settled_at
 from .pairs import AS_GOOD, nested
 from .sparse import as_far
 
-__all__ = ["concluded", "in_steps_of", "resolved"]
+__all__ = ["OPEN", "concluded", "in_steps_of", "resolved"]
 
 # What is less than about e^12 behind the best, or as good by `AS_GOOD`, is fitted as far, so many single effects and
 # pairs at most: a total moves by some e^3 with the place around which its noise is measured, and by more with where a
 # fit stopped.
-_OPEN, _EQUALLY_FAR, _PAIRS_EQUALLY_FAR = 12.0, 3, 2
+OPEN, _EQUALLY_FAR, _PAIRS_EQUALLY_FAR = 12.0, 3, 2
 
 
 def in_steps_of(fitter: Fitter, leader: Contender, contenders: Sequence[Contender], tell: OnPhase) -> list[Contender]:
@@ -94,17 +94,17 @@ def resolved(
 
 
 def _equally_far(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase) -> list[Contender]:
-    """Fit what may be as good as the best as far as that, without what it does not need."""
+    """Fit what may be as good as the best as far as that, without what it does not need, and from where the best is."""
     alike, made = fitter.comparison.alike, list(contenders)
     scores = [c.total + 2.0 * alike * SECOND * (len(c.names) - 1) for c in made]
     order = np.argsort(scores, kind="stable").tolist()
-    best, open_to = made[order[0]], scores[order[0]] + 2.0 * alike * _OPEN
+    best, open_to = made[order[0]], scores[order[0]] + 2.0 * alike * OPEN
     # All against one noise: what does as the best does may have stopped beside its valley.
     fitter.take_likeliest_noise(best.effects)
     costs = [fitter.again(c.fit).cost + c.step_credit for c in made if c.fit is not None]
     here = costs[order[0]]
-    as_good = here + AS_GOOD * max(fitter.nominal()[1] - here, 0.0)
-    explaining = [len(c.names) <= len(best.names) and cost < as_good for c, cost in zip(made, costs, strict=True)]
+    worst = here + AS_GOOD * max(fitter.nominal()[1] - here, 0.0)
+    explaining = [len(c.names) <= len(best.names) and cost < worst for c, cost in zip(made, costs, strict=True)]
     near = [k for k in order if scores[k] < open_to or explaining[k]]
     if len(near) == 1:
         return made
@@ -119,17 +119,19 @@ def _equally_far(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase)
             alone = made[k] if made[k].settled else by_itself(fitter, made[k], evaluations=1)
             made[k] = nested(fitter, alone, [c for c in made if len(c.names) > 1])
         made[k] = as_far(fitter, made[k], alike)
-    for k in singles[1:]:
+    singles.sort(key=lambda k: made[k].total)
+    for n, k in enumerate(singles[1:]):
+        tell("from where the best is", n, len(singles) - 1)
         made[k] = _from_counterparts(fitter, made[k], made[singles[0]])
     return likeliest_first(made)
 
 
 def _from_counterparts(fitter: Fitter, contender: Contender, best: Contender) -> Contender:
-    """Fit an effect also from where it does what the best one does in the steps and the noise of the moment."""
+    """Fit an effect also from where it does what the best one does, and return what is likelier."""
     assert contender.fit is not None
     assert best.fit is not None
     (kind,) = best.fit.hypothesis.kinds
-    for c in counterparts(fitter, best, kind, [contender.fit.hypothesis]):
+    for c in as_good(fitter, best, kind, [contender.fit.hypothesis]):
         from_there = as_far(fitter, settled_at(fitter, c.hypothesis, c.point), fitter.comparison.alike)
         contender = likeliest([contender, from_there])
     return contender

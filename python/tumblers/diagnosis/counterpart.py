@@ -35,7 +35,7 @@ from .pairs import AS_GOOD
 from .predictive import is_wanting
 from .step_credit import step_credit
 
-__all__ = ["Counterpart", "counterparts", "with_counterparts"]
+__all__ = ["Counterpart", "as_good", "counterparts", "with_counterparts"]
 
 Floats = NDArray[np.float64]
 
@@ -45,7 +45,7 @@ _SHARES = (0.05, 0.25, 1.0)
 _STEP, _MOST_FREE = 1e-2, 5
 # Where the other explains less of what the first does (of its sum of squares), it is no counterpart. A choice.
 _EXPLAINED = 0.5
-# Counterparts of one effect that are fitted, in so many trial points, and how often the best may change by it.
+# Effects in the place of one that are fitted, in so many trial points, and how often the best may change by it.
 _FITTED, _POINTS, _ROUNDS = 3, 4, 2
 
 
@@ -104,14 +104,11 @@ def _add_counterparts(
     """Keep the counterparts of a contender that are better than what is known of the same effects."""
     assert best.fit is not None
     for kind in best.fit.hypothesis.kinds:
-        those = counterparts(fitter, best, kind, possible)
+        those = as_good(fitter, best, kind, possible)
+        first = list(dict.fromkeys(c.hypothesis.names for c in those))[:_FITTED]
         # All against the noise around the contender.
-        nominal, here = fitter.nominal()[1], fitter.again(best.fit).cost + best.step_credit
-        worst = here + AS_GOOD * max(nominal - here, 0.0)
-        near = [c for c in those if c.cost < worst]
-        few = list(dict.fromkeys(c.hypothesis.names for c in near))[:_FITTED]
-        near = [c for c in near if c.hypothesis.names in few]
-        fits = [fitter.fit(c.hypothesis, c.point, evaluations=_POINTS) for c in near]
+        fits = [fitter.fit(c.hypothesis, c.point, evaluations=_POINTS) for c in those if c.hypothesis.names in first]
+        fits.sort(key=lambda fit: fit.cost)
         for fit in [fit for fit in fits if _is_better(fitter, fit, made.get(frozenset(fit.hypothesis.names)))]:
             # Each against its own.
             other = settled_at(fitter, fit.hypothesis, fit.point, IDLE_POINTS, fit.steps)
@@ -125,6 +122,25 @@ def _add_counterparts(
 def _is_better(fitter: Fitter, fit: Fit, known: Contender | None) -> bool:
     """Return whether a fit is better than what is known of the same effects, against the noise of the moment."""
     return known is None or known.fit is None or fit.cost <= fitter.again(known.fit).cost - ENOUGH
+
+
+def as_good(
+    fitter: Fitter, contender: Contender, kind: type[Effect], possible: Sequence[Hypothesis]
+) -> list[Counterpart]:
+    """Return the counterparts that do enough of what the contender does about the data, the likeliest first.
+
+    The noise is taken around the contender, and stays.
+
+    Parameters
+    ----------
+    fitter, contender, kind, possible
+        As in `counterparts`.
+    """
+    assert contender.fit is not None
+    those = counterparts(fitter, contender, kind, possible)
+    nominal, here = fitter.nominal()[1], fitter.again(contender.fit).cost + contender.step_credit
+    worst = here + AS_GOOD * max(nominal - here, 0.0)
+    return [counterpart for counterpart in those if counterpart.cost < worst]
 
 
 def counterparts(

@@ -165,10 +165,10 @@ class _Conclusion:
         verdict, chosen = judge(comparison, attribution, self.stands(best))
         if chosen is not best:
             gap = shrink(self.fitter, nominal, self.seed)
-        tied = ties(comparison, attribution, chosen, lambda other: lead_around(self.fitter, chosen, other))
+        tied = ties(comparison, attribution, chosen, lambda other: self._lead(chosen, other))
 
         estimates, shown = self._estimates(chosen, tied), overlays(self.fitter, nominal, self.held_out(chosen), chosen)
-        # What counts as the nominal model has left it its probability, not its evidence.
+        # Not by evidence: the nominal model has the probability of what counts as it, too.
         by_probability = sorted(attribution.contenders, key=lambda contender: -contender.probability)
         ranking = tuple(self._ranked(contender) for contender in by_probability)
         floors, proposed = self._floors(chosen), self._next(chosen, tied, tell)
@@ -205,6 +205,10 @@ class _Conclusion:
             seconds=perf_counter() - start,
             version=__version__,
         )
+
+    def _lead(self, chosen: Contender, other: Contender) -> float:
+        self.tell("against the noise around others", 0, 1)
+        return lead_around(self.fitter, chosen, other)
 
     def _where(self, chosen: Contender) -> tuple[tuple[Region, ...], tuple[HeatMap, ...]]:
         """Return where the nominal model parts from the data.

@@ -270,17 +270,17 @@ def lead_around(fitter: Fitter, contender: Contender, other: Contender) -> float
     fitter
         Of the dataset.
     contender, other
-        Neither is the nominal model. The contender may follow the other's noise; the other has.
+        Neither is the nominal model. Both are fitted on against that noise: a fit has followed its own.
     """
-    assert contender.fit is not None
     floors = fitter.comparison.floors
-    theirs = beside(fitter, other, other)
-    mine = beside(fitter, contender, other)
-    hypothesis, steps = contender.fit.hypothesis, contender.fit.steps
-    fit = fitter.fit(hypothesis, contender.point, evaluations=POLISH_POINTS, steps=steps)
-    least = min(mine.total, of_fit(fitter, fit).total)
+    totals = []
+    for one in (other, contender):
+        held = beside(fitter, one, other)
+        assert held.fit is not None
+        fit = fitter.fit(held.fit.hypothesis, held.point, evaluations=POLISH_POINTS, steps=held.fit.steps)
+        totals.append(min(held.total, of_fit(fitter, fit).total))
     fitter.comparison.floors = floors
-    return theirs.total - least
+    return totals[0] - totals[1]
 
 
 def beside(fitter: Fitter, contender: Contender, around: Contender) -> Contender:

@@ -8,8 +8,8 @@ import numpy as np
 
 from .attribute import ROUGH, Attribution
 from .comparison import Comparison
+from .conclusion import OPEN
 from .contender import Contender
-from .own_noise import NEAR
 from .predictive import is_right
 from .result import Verdict
 
@@ -38,9 +38,9 @@ def judge(comparison: Comparison, attribution: Attribution, foretold: bool) -> t
     nominal, best = attribution.nominal, attribution.contenders[0]
     # What is wide enough around the nominal model hides a gap: where another is likelier, against its noise too.
     doubtful = attribution.doubt > _LEAST_DOUBT and is_right(comparison, nominal.residual)
-    # Nothing is named that is less probable than that there is nothing.
-    doubtful = doubtful or nominal.probability >= best.probability
-    if attribution.nominal_is_right and (not best.names or doubtful):
+    # What counts as the nominal model may make it more probable than what evidence ranks first.
+    likelier = attribution.doubt >= attribution.beyond_lapse(best)
+    if attribution.nominal_is_right and (not best.names or doubtful or likelier):
         return "no_gap", nominal
     if not best.names:
         return "unexplained", best
@@ -75,7 +75,7 @@ def refused(
 
 
 def ties(
-    comparison: Comparison, attribution: Attribution, chosen: Contender, lead: Callable[[Contender], float]
+    comparison: Comparison, attribution: Attribution, chosen: Contender, lead_around: Callable[[Contender], float]
 ) -> dict[str, tuple[str, ...]]:
     """Return for each effect of the chosen set those that these trials cannot tell apart from it.
 
@@ -92,9 +92,9 @@ def ties(
         Every hypothesis.
     chosen
         The one that is reported.
-    lead
-        By how much the objective of the one that is reported is less than another's, both against the noise around
-        that.
+    lead_around
+        By how much the total of the one that is reported is less than another's, both against the noise around that;
+        asked of those that are open (`OPEN`).
     """
     trials = range(len(comparison.readers))
     said = chosen.residual.over(trials)
@@ -116,12 +116,13 @@ def ties(
             # What either would lose on average if the other were right.
             apart = float(np.sum(weights * (other.residual.over(trials) - said) ** 2)) / (2.0 * attribution.dispersion)
             behind = chosen.log_likelihood - other.log_likelihood
-            parsimony = chosen.log_evidence - other.log_evidence - behind
-            least = min(behind + parsimony, behind, apart)
-            if least >= limit and 2.0 * attribution.dispersion * behind < NEAR:
-                there = lead(other) / (2.0 * attribution.dispersion)
-                least = min(there + parsimony, there)
-            if least < limit:
+            # What evidence has beside likelihood: Occam's factor and the prior.
+            beside = chosen.log_evidence - other.log_evidence - behind
+            least = min(behind + beside, behind)
+            if limit <= min(least, apart) and least < OPEN:
+                around_other = lead_around(other) / (2.0 * attribution.dispersion)
+                least = min(around_other + beside, around_other)
+            if min(least, apart) < limit:
                 (instead,) = names - kept
                 out[name].append(instead)
     return {name: tuple(others) for name, others in out.items()}

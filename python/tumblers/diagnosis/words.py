@@ -136,7 +136,7 @@ def headline(diagnosis: Diagnosis) -> str:
             close = "close" if plural else "closes"
             return (
                 f"{causes}: {amounts}{together} {close} the gap, from {_sigmas(gap.after_nuisance_only)} to "
-                f"{_sigmas(diagnosis.ranking[0].gap)} where it is fitted; the trials that show it are too few for the "
+                f"{_sigmas(_fitted(diagnosis))} where it is fitted; the trials that show it are too few for the "
                 "others to foretell it."
             )
         return f"{causes}: {amounts}{together} {'explain' if plural else 'explains'} {_explained(gap)}."
@@ -148,7 +148,7 @@ def headline(diagnosis: Diagnosis) -> str:
     if not phrases:
         return f"Unexplained: {left}, and {none}."
     partial = " and ".join(f"{phrase.cause}, {phrase.amount.rstrip(',')}" for phrase in phrases)
-    fitted = diagnosis.ranking[0].gap
+    fitted = _fitted(diagnosis)
     if fitted < _CLOSED * gap.noise_floor:
         return (
             f"Unexplained: {left}. It would close, to {_sigmas(fitted)}, if {partial}; but too few trials show it to "
@@ -254,6 +254,12 @@ def _own(gap: Gap) -> float:
     """Return what the effects shrink of the gap that the refitted sensor leaves, 1 where it leaves none."""
     left = gap.after_nuisance_only - gap.noise_floor
     return 1.0 - max(gap.after - gap.noise_floor, 0.0) / left if left > 0.0 else 1.0
+
+
+def _fitted(diagnosis: Diagnosis) -> float:
+    """Return the gap that the chosen effects leave where they are fitted."""
+    names = {effect.name for effect in diagnosis.effects}
+    return next(ranked.gap for ranked in diagnosis.ranking if set(ranked.effects) == names)
 
 
 def _scope(diagnosis: Diagnosis) -> str:
