@@ -15,7 +15,9 @@ from tumblers.diagnosis.localise import localise
 from tumblers.diagnosis.onset import _evidence, _shared, begins_at_phase, begins_at_place, begins_at_time
 from tumblers.diagnosis.result import Region
 from tumblers.diagnosis.simulator import Simulator
+from tumblers.diagnosis.wrench_place import lacks_at_place
 from tumblers.effects import get
+from tumblers.effects.base import Effect
 from tumblers.presets import drive
 
 from .lab import ANGLE_NOISE_DEG, FRAMES_PER_SECOND, POSITION_NOISE_M, measure, plan
@@ -103,6 +105,49 @@ def test_a_sticky_place_is_found_where_it_is_and_not_where_the_robot_came_late_f
     law = StickySpot(size=0.2, place_m=place)
     (found,) = where(filmed(LONGER, law, seed=2, frames_per_second=120.0), "position_y_m")
     assert shared(found, *place) > 0.5
+
+
+def _slow(*truth: Effect, law: Law | None = None) -> Comparison:
+    planned = plan([("f2", drive(0.010, 2.0), 0.0)], duration_s=0.9)
+    if law is not None:
+        return compared(filmed(planned, law, seed=2, frames_per_second=120.0))
+    return compared(measure(planned, truth, seed=3, clock_frames=0.3))
+
+
+def test_one_trial_tells_the_place_in_which_something_holds_the_robot() -> None:
+    place = 1.2e-3, 2.4e-3
+    comparison = _slow(law=StickySpot(size=0.3, place_m=place))
+    paths = comparison.nominal_paths
+    residual = comparison.residual(paths)
+    # It stays off after the place.
+    assert begins_at_place(comparison, residual, paths) is None
+    found = lacks_at_place(comparison, residual, paths, 0)
+    assert found is not None
+    assert shared(found, *place) > 0.6
+    assert found.share_of_gap > 0.4
+    # A trial is asked only where no effect explains the gap.
+    for unexplained in (False, True):
+        regions, _ = localise(comparison, residual, paths, unexplained)
+        told = [(r.low, r.high) for r in regions if r.axis == "position_y_m"]
+        assert ((found.low, found.high) in told) == unexplained
+
+
+@pytest.mark.parametrize(("effect", "vector"), [("viscous_drag", (0.03,)), ("magnetization_misalignment", (6.0, 20.0))])
+def test_one_trial_tells_no_place_of_what_acts_all_along(effect: str, vector: tuple[float, ...]) -> None:
+    comparison = _slow(get(effect).from_vector(vector))
+    residual = comparison.residual(comparison.nominal_paths)
+    assert np.mean(residual.trials[0] ** 2) > 4.0
+    assert lacks_at_place(comparison, residual, comparison.nominal_paths, 0) is None
+
+
+def test_a_trial_that_was_not_seen_along_y_tells_no_place() -> None:
+    comparison = _slow(get("viscous_drag").from_vector((0.03,)))
+    residual = comparison.residual(comparison.nominal_paths)
+    assert lacks_at_place(comparison, residual, [None], 0) is None
+    (reader,) = comparison.readers
+    values = {name: seen for name, seen in reader.observed.values.items() if name != "y"}
+    comparison.readers = (replace(reader, observed=replace(reader.observed, values=values)),)
+    assert lacks_at_place(comparison, residual, comparison.nominal_paths, 0) is None
 
 
 @pytest.mark.parametrize(("phase", "share"), [(0.3, 0.2), (0.15, 0.25)])

@@ -32,7 +32,7 @@ from .overlay import overlays
 from .own_noise import lead_around
 from .posterior import samples
 from .predictive import is_right
-from .result import EffectEstimate, HeatMap, Interval, NextTrial, RankedHypothesis, Region, TrialFloor
+from .result import EffectEstimate, HeatMap, Interval, NextTrial, RankedHypothesis, Region, TrialFloor, Verdict
 from .simulator import Job, Simulator
 from .verdict import judge, refused, ties
 from .wrench import missing_wrench, wrench_regions
@@ -173,7 +173,7 @@ class _Conclusion:
         ranking = tuple(self._ranked(contender) for contender in by_probability)
         floors, proposed = self._floors(chosen), self._next(chosen, tied, tell)
         tell("where the gap lies", 0, 2)
-        regions, maps = self._where(chosen)
+        regions, maps = self._where(chosen, verdict)
         # What is missing is seen against the noise around the nominal model, not around other hypotheses.
         comparison.take_noise_of(())
         still = comparison.residual(comparison.nominal_paths)
@@ -210,7 +210,7 @@ class _Conclusion:
         self.tell("against the noise around others", 0, 1)
         return lead_around(self.fitter, chosen, other)
 
-    def _where(self, chosen: Contender) -> tuple[tuple[Region, ...], tuple[HeatMap, ...]]:
+    def _where(self, chosen: Contender, verdict: Verdict) -> tuple[tuple[Region, ...], tuple[HeatMap, ...]]:
         """Return where the nominal model parts from the data.
 
         How much of what may be wrong with the computed motion really is, and how far the nominal numbers are off, shows
@@ -222,7 +222,7 @@ class _Conclusion:
         tolerance = comparison.residual(paths).tolerance
         comparison.take_noise_of((), shares=shares)
         bare = comparison.residual(comparison.nominal_paths, tolerance=tolerance)
-        return localise(comparison, bare, comparison.nominal_paths)
+        return localise(comparison, bare, comparison.nominal_paths, unexplained=verdict == "unexplained")
 
     def _estimates(self, chosen: Contender, tied: dict[str, tuple[str, ...]]) -> tuple[EffectEstimate, ...]:
         found = intervals(self.fitter, self.attribution, chosen)

@@ -11,13 +11,14 @@ which is three standard errors of a sum of squares whose numbers are correlated 
 unless a trial does, and in a trial ν is 1, the floor's variance, which is more than the noise has.
 
 Of time, of place and of the cycle an interval holds most of what is affected. Where the gap sets in at a moment, in a
-place along y or in a part of the cycle that trials share (`onset`), the region is that instead.
+place along y or in a part of the cycle that trials share (`onset`), the region is that instead; and where they share no
+place, but one trial has most of the gap, that in which a wrench is missing in that one (`wrench_place`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +29,7 @@ from .observed import CHANNELS
 from .onset import begins_at_phase, begins_at_place, begins_at_time
 from .pose import Path
 from .result import HeatMap, Region
+from .wrench_place import lacks_at_place
 
 __all__ = ["localise"]
 
@@ -41,6 +43,8 @@ _TRIAL_EXCESS = 0.3
 # An interval holds this much of what stands out on its axis; a region with less of the whole gap is not worth telling.
 _MOST = 0.8
 _LEAST_SHARE = 0.1
+# A trial that has so much of the gap may say by itself where it comes from.
+_IN_ONE = 0.5
 # A region holds more of the gap than of the numbers by this factor.
 _CONCENTRATED = 1.25
 _BINS = 10
@@ -69,7 +73,7 @@ class _Axis:
 
 
 def localise(
-    comparison: Comparison, residual: Residual, paths: Sequence[Path | None]
+    comparison: Comparison, residual: Residual, paths: Sequence[Path | None], unexplained: bool = False
 ) -> tuple[tuple[Region, ...], tuple[HeatMap, ...]]:
     """Return the regions of the gap, the greatest share first, and maps of it.
 
@@ -81,6 +85,8 @@ def localise(
         How wrong the nominal model is, the sensor's nuisances fitted.
     paths
         The nominal model's.
+    unexplained
+        Whether no effect that acts all along explains the gap, so that one trial is asked for a place.
 
     Returns
     -------
@@ -95,6 +101,12 @@ def localise(
     if regions:
         found = [begins(comparison, residual, paths) for begins in (begins_at_time, begins_at_place, begins_at_phase)]
         begun = {region.axis: region for region in found if region is not None}
+        most = max(regions, key=lambda region: region.share_of_gap)
+        if unexplained and "position_y_m" not in begun and most.share_of_gap > _IN_ONE:
+            assert most.value is not None
+            place = lacks_at_place(comparison, residual, paths, ids.index(most.value))
+            if place is not None:
+                begun[place.axis] = replace(place, share_of_gap=most.share_of_gap * place.share_of_gap)
         for axis in axes.values():
             regions += [begun[axis.name]] if axis.name in begun else _interval(cells, axis, total)
         regions += _values(cells, "contact_mode", cells.mode, MODES, total)

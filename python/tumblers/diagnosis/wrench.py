@@ -22,27 +22,30 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ..field import RotatingField, TableField
-from ..scenario import Scenario
-from ..surroundings import Surroundings
+from ..field import RotatingField
 from .cells import MODES
 from .comparison import Comparison, Residual
-from .loss import HUBER, robust_cost
+from .loss import HUBER
 from .pose import Path
 from .result import MissingWrench
-from .simulator import Edit, Job
+from .simulator import Job
 from .wrench_maps import mapped, wrench_regions
 from .wrench_means import Windows
 from .wrench_pieces import HALF_A_CYCLE, Pieces, along, at_rest, within_cycles
+from .wrench_trial import (
+    added,
+    derivative_steps,
+    end_s,
+    left_by,
+    nuisance_columns,
+    nuisances_present,
+    prior_sigma,
+)
 
 __all__ = ["missing_wrench", "wrench_regions"]
 
 Floats = NDArray[np.float64]
 
-_PRIOR_SHARE = 0.3
-# The derivatives' steps, as shares of the weight and of the moment that it turns the body over with: smaller ones meet
-# the jumps of a body that may or may not leave an edge.
-_STEP_FORCE, _STEP_TORQUE = 0.03, 0.02
 _ITERATIONS = 2
 # Shares of a Gauss-Newton step that are tried.
 _SHARES = (1.0, 0.5, 0.2)
@@ -114,7 +117,7 @@ def _estimated(
     comparison: Comparison, residual: Residual, paths: Sequence[Path | None], pieces: dict[int, Pieces]
 ) -> list[Windows]:
     """Return the wrench of each trial's windows."""
-    prior = {i: _prior_sigma(comparison.simulator.nominal(i)) for i in pieces}
+    prior = {i: prior_sigma(comparison.simulator.nominal(i)) for i in pieces}
     states = {}
     for i, mine in pieces.items():
         path = paths[i]
@@ -133,7 +136,7 @@ def _chosen(comparison: Comparison, residual: Residual, paths: Sequence[Path | N
         for i, path in enumerate(paths)
         if path is not None
         and any(k.any() for k in comparison.floors[i].valid.values())
-        and _end_s(comparison, i) >= _LEAST_STEPS * comparison.simulator.nominal(i).run.fixed_step_s
+        and end_s(comparison, i) >= _LEAST_STEPS * comparison.simulator.nominal(i).run.fixed_step_s
     ]
     off = {i: float(np.mean(np.minimum(residual.trials[i] ** 2, HUBER**2))) for i in tracked}
     most = max(1, min(_MOST_TRIALS, most_windows // _WINDOWS_AT_REST))
@@ -148,15 +151,8 @@ def _shared(comparison: Comparison, trials: Sequence[int], most_windows: int) ->
     return {i: max(2, min(each, int(each * share / steps[i]))) for i in trials}
 
 
-def _end_s(comparison: Comparison, trial: int) -> float:
-    # Beyond the last frame nothing says what is missing.
-    observed = comparison.readers[trial].observed
-    last = float(observed.time_s[-1]) + observed.frame_interval_s
-    return min(last, comparison.simulator.nominal(trial).run.duration_s)
-
-
 def _along(comparison: Comparison, trial: int, most: int) -> Pieces:
-    field, end, count = comparison.dataset.trials[trial].field, _end_s(comparison, trial), min(most, _MOST_WINDOWS)
+    field, end, count = comparison.dataset.trials[trial].field, end_s(comparison, trial), min(most, _MOST_WINDOWS)
     if not isinstance(field, RotatingField):
         return at_rest(end, min(count, _WINDOWS_AT_REST))
     return along(field.frequency_Hz, end, count)
@@ -167,55 +163,13 @@ def _within_cycles(comparison: Comparison, trial: int, windows: Pieces, most_ste
 
     None as well of a run of less than a cycle, and of one that has too many steps.
     """
-    field, end = comparison.dataset.trials[trial].field, _end_s(comparison, trial)
+    field, end = comparison.dataset.trials[trial].field, end_s(comparison, trial)
     if not isinstance(field, RotatingField) or field.frequency_Hz * end < 1.0:
         return None
     found = within_cycles(field.frequency_Hz, end)
     told = (windows.edges[1] - windows.edges[0]) * field.frequency_Hz <= HALF_A_CYCLE
     steps = 2 * 6 * found.count * comparison.simulator.nominal(trial).run.steps
     return None if told or steps > most_steps else found
-
-
-def _scales(scenario: Scenario) -> tuple[float, float, float]:
-    """Return the weight with F_elect, N, the magnetic moment times the field, N m, and the body's half length, m."""
-    robot, field = scenario.robot, scenario.field
-    weight = robot.total_mass_kg * scenario.run.gravity_m_per_s2 + scenario.substrate.electrostatic_force_N
-    strength = (
-        float(np.max(np.linalg.norm(field.field_T, axis=1))) if isinstance(field, TableField) else field.strength_T
-    )
-    moment = float(np.linalg.norm(robot.magnetic_moment_A_m2)) * strength
-    return weight, moment, float(np.max(np.abs(np.concatenate(robot.body().outline))))
-
-
-def _prior_sigma(scenario: Scenario) -> Floats:
-    weight, moment, reach = _scales(scenario)
-    # Without a field the weight bounds the torque that could be missing, and without a weight the field the force.
-    force, torque = max(weight, 1e-3 * moment / reach), max(moment, 1e-3 * weight * reach)
-    return _PRIOR_SHARE * np.array([force] * 3 + [torque] * 3)
-
-
-def _steps(scenario: Scenario) -> Floats:
-    weight, moment, reach = _scales(scenario)
-    force, torque = max(weight, 1e-3 * moment / reach), max(weight * reach, 1e-3 * moment)
-    return np.array([_STEP_FORCE * force] * 3 + [_STEP_TORQUE * torque] * 3)
-
-
-def _adds(pieces: Pieces, wrench: Floats) -> Edit:
-    def edit(scenario: Scenario) -> Scenario:
-        table = Surroundings(wrench_time_s=tuple(pieces.edges.tolist()), wrench_N_N_m=tuple(pieces.rows(wrench)))  # type: ignore[arg-type]
-        return replace(scenario, surroundings=table)
-
-    return edit
-
-
-def _nuisances(comparison: Comparison, residual: Residual, trial: int, path: Path) -> Floats:
-    """Return the whitened columns of the nuisances in units of their priors, shape (n, m)."""
-    floor = comparison.floors[trial]
-    found = comparison.readers[trial].linearised(path, residual.local[trial], residual.camera)
-    parts = [floor.whiten[name] @ found[name][kept, :5] for name, kept in floor.valid.items()]
-    rows = np.concatenate([*parts, np.zeros((len(floor.outcome_scale), 5))])
-    sigmas = np.concatenate([comparison.nuisances.local_sigmas[trial], comparison.nuisances.shared_sigmas])
-    return np.asarray(np.hstack([rows, -floor.tolerance]) * sigmas, dtype=np.float64)
 
 
 def _slopes(
@@ -230,13 +184,13 @@ def _slopes(
     A column counts as far as what a step changes turns round with the step.
     """
     jobs = []
-    steps = {i: _steps(comparison.simulator.nominal(i)) for i in states}
+    steps = {i: derivative_steps(comparison.simulator.nominal(i)) for i in states}
     for i, state in states.items():
         for k in range(state.wrench.size):
             for sign in (1.0, -1.0):
                 moved = state.wrench.copy().ravel()
                 moved[k] += sign * steps[i][k % 6]
-                jobs.append(Job(i, edit=_adds(pieces[i], moved.reshape(-1, 6))))
+                jobs.append(Job(i, edit=added(pieces[i], moved.reshape(-1, 6))))
     found = iter(comparison.simulator.run(jobs))
     slopes = {}
     for i, state in states.items():
@@ -252,15 +206,6 @@ def _slopes(
             columns.append(odd * share * prior[i][k % 6] / steps[i][k % 6])
         slopes[i] = np.column_stack(columns)
     return slopes
-
-
-def _present(comparison: Comparison, residual: Residual, trial: int) -> Floats:
-    """Return how far the nuisances are off already, in units of their priors, shape (m,).
-
-    What they took of the gap under the nominal model costs them, so that a wrench can take it back.
-    """
-    shared = np.concatenate([residual.camera, residual.tolerance]) / comparison.nuisances.shared_sigmas
-    return np.concatenate([residual.local[trial] / comparison.nuisances.local_sigmas[trial], shared])
 
 
 def _information(state: _State, slopes: Floats, nuisances: Floats, present: Floats) -> tuple[Floats, Floats]:
@@ -284,11 +229,11 @@ def _improved(
     tried: dict[int, list[tuple[float, Floats]]] = {}
     for i, state in states.items():
         here = (state.wrench / prior[i]).ravel()
-        nuisances = _nuisances(comparison, residual, i, state.path)
-        a, g = _information(state, slopes[i], nuisances, _present(comparison, residual, i))
+        nuisances = nuisance_columns(comparison, residual, i, state.path)
+        a, g = _information(state, slopes[i], nuisances, nuisances_present(comparison, residual, i))
         step: Floats = -np.linalg.solve(a + np.eye(len(a)), g + here).astype(np.float64)
         tried[i] = [(share, share * step) for share in _SHARES]
-        jobs += [Job(i, edit=_adds(pieces[i], _moved(state, change, prior[i]))) for _, change in tried[i]]
+        jobs += [Job(i, edit=added(pieces[i], _moved(state, change, prior[i]))) for _, change in tried[i]]
     found = iter(comparison.simulator.run(jobs))
     out = {}
     for i, state in states.items():
@@ -317,13 +262,8 @@ def _moved(state: _State, change: Floats, prior: Floats) -> Floats:
 
 def _cost(comparison: Comparison, residual: Residual, trial: int, state: _State, prior: Floats) -> float:
     """Return the objective, the nuisances at their best."""
-    n, present = _nuisances(comparison, residual, trial, state.path), _present(comparison, residual, trial)
-    weight = np.sqrt(np.minimum(1.0, HUBER / np.maximum(np.abs(state.values), 1e-12)))[:, None]
-    best = -np.linalg.solve(
-        (n * weight).T @ (n * weight) + np.eye(n.shape[1]), (n * weight).T @ (state.values * weight[:, 0]) + present
-    )
-    off = best + present
-    return robust_cost(state.values + n @ best) + float(off @ off) + float(np.sum((state.wrench / prior) ** 2))
+    left = left_by(comparison, residual, trial, state.path, state.values)
+    return left + float(np.sum((state.wrench / prior) ** 2))
 
 
 def _windows(
@@ -337,8 +277,8 @@ def _windows(
     slopes: Floats,
 ) -> Windows:
     assert nominal is not None
-    nuisances = _nuisances(comparison, residual, trial, state.path)
-    a, _ = _information(state, slopes, nuisances, _present(comparison, residual, trial))
+    nuisances = nuisance_columns(comparison, residual, trial, state.path)
+    a, _ = _information(state, slopes, nuisances, nuisances_present(comparison, residual, trial))
     # A wrench that leaves a gap, or does not do what its derivatives foretell, is known less well than by noise alone.
     spread = max(1.0, float(np.mean(np.minimum(state.values**2, HUBER**2)))) + state.error
     scale = np.tile(prior, pieces.count)
