@@ -15,7 +15,7 @@ from tumblers.diagnosis.localise import localise
 from tumblers.diagnosis.onset import _evidence, _shared, begins_at_phase, begins_at_place, begins_at_time
 from tumblers.diagnosis.result import Region
 from tumblers.diagnosis.simulator import Simulator
-from tumblers.diagnosis.wrench_place import lacks_at_place
+from tumblers.diagnosis.wrench_place import _parts, _while, lacks_at_place
 from tumblers.effects import get
 from tumblers.effects.base import Effect
 from tumblers.presets import drive
@@ -119,8 +119,6 @@ def test_one_trial_tells_the_place_in_which_something_holds_the_robot() -> None:
     comparison = _slow(law=StickySpot(size=0.3, place_m=place))
     paths = comparison.nominal_paths
     residual = comparison.residual(paths)
-    # It stays off after the place.
-    assert begins_at_place(comparison, residual, paths) is None
     found = lacks_at_place(comparison, residual, paths, 0)
     assert found is not None
     assert shared(found, *place) > 0.6
@@ -138,6 +136,36 @@ def test_one_trial_tells_no_place_of_what_acts_all_along(effect: str, vector: tu
     residual = comparison.residual(comparison.nominal_paths)
     assert np.mean(residual.trials[0] ** 2) > 4.0
     assert lacks_at_place(comparison, residual, comparison.nominal_paths, 0) is None
+
+
+def test_one_trial_tells_no_place_of_what_sets_in_at_a_moment() -> None:
+    comparison = _slow(law=PhaseJump(size=0.2, time_s=0.35, forwards=-1.0))
+    residual = comparison.residual(comparison.nominal_paths)
+    assert np.mean(residual.trials[0] ** 2) > 4.0
+    assert lacks_at_place(comparison, residual, comparison.nominal_paths, 0) is None
+
+
+@pytest.mark.parametrize("forwards", [1.0, -1.0])
+def test_a_place_is_where_a_robot_neither_begins_nor_ends(forwards: float) -> None:
+    y = forwards * np.concatenate([np.linspace(0.0, 1.0, 30), np.linspace(1.0, 0.95, 5)])
+    inner, outer = _parts(y, 10)
+    for parts, either in ((inner, False), (outer, True)):
+        assert parts
+        assert all(bool(part.inside[0] or part.inside[-1]) == either for part in parts)
+    # All of its way, from where it began to anywhere, and from anywhere to where it ended.
+    assert len(outer) == 10 + 9
+    assert len(inner) == 55 - 19
+    near = 1e-9
+    assert all(part.inside.tolist() == ((y > part.low - near) & (y < part.high + near)).tolist() for part in inner)
+
+
+def test_a_wrench_acts_while_the_robot_is_inside_and_then_alone() -> None:
+    time, inside = 0.1 * np.arange(1, 8), np.array([0, 0, 1, 1, 0, 1, 0], dtype=bool)
+    pieces = _while(time, inside, 1.0)
+    assert pieces.edges == pytest.approx([0.0, 0.25, 0.45, 0.55, 0.65, 1.0])
+    assert pieces.window.tolist() == [0, 1, 0, 1, 0]
+    whole = _while(time, np.ones(7, dtype=bool), 1.0)
+    assert (whole.edges.tolist(), whole.window.tolist()) == ([0.0, 1.0], [0])
 
 
 def test_a_trial_that_was_not_seen_along_y_tells_no_place() -> None:

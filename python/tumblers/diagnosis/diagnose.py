@@ -222,7 +222,7 @@ class _Conclusion:
         tolerance = comparison.residual(paths).tolerance
         comparison.take_noise_of((), shares=shares)
         bare = comparison.residual(comparison.nominal_paths, tolerance=tolerance)
-        return localise(comparison, bare, comparison.nominal_paths, unexplained=verdict == "unexplained")
+        return localise(comparison, bare, comparison.nominal_paths, verdict == "unexplained", self.tell)
 
     def _estimates(self, chosen: Contender, tied: dict[str, tuple[str, ...]]) -> tuple[EffectEstimate, ...]:
         found = intervals(self.fitter, self.attribution, chosen)

@@ -11,8 +11,8 @@ which is three standard errors of a sum of squares whose numbers are correlated 
 unless a trial does, and in a trial ν is 1, the floor's variance, which is more than the noise has.
 
 Of time, of place and of the cycle an interval holds most of what is affected. Where the gap sets in at a moment, in a
-place along y or in a part of the cycle that trials share (`onset`), the region is that instead; and where they share no
-place, but one trial has most of the gap, that in which a wrench is missing in that one (`wrench_place`).
+place along y or in a part of the cycle that trials share (`onset`), the region is that instead; and where they share
+none of these, but one trial has most of the gap, the place in which a wrench is missing in that one (`wrench_place`).
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..progress import OnPhase
 from .cells import MODES, Cells
 from .comparison import Comparison, Residual
 from .observed import CHANNELS
@@ -73,7 +74,11 @@ class _Axis:
 
 
 def localise(
-    comparison: Comparison, residual: Residual, paths: Sequence[Path | None], unexplained: bool = False
+    comparison: Comparison,
+    residual: Residual,
+    paths: Sequence[Path | None],
+    unexplained: bool = False,
+    on_phase: OnPhase | None = None,
 ) -> tuple[tuple[Region, ...], tuple[HeatMap, ...]]:
     """Return the regions of the gap, the greatest share first, and maps of it.
 
@@ -87,6 +92,8 @@ def localise(
         The nominal model's.
     unexplained
         Whether no effect that acts all along explains the gap, so that one trial is asked for a place.
+    on_phase
+        Is told the phase, how much of it is done, and of how much.
 
     Returns
     -------
@@ -102,9 +109,9 @@ def localise(
         found = [begins(comparison, residual, paths) for begins in (begins_at_time, begins_at_place, begins_at_phase)]
         begun = {region.axis: region for region in found if region is not None}
         most = max(regions, key=lambda region: region.share_of_gap)
-        if unexplained and "position_y_m" not in begun and most.share_of_gap > _IN_ONE:
+        if unexplained and not begun and most.share_of_gap > _IN_ONE:
             assert most.value is not None
-            place = lacks_at_place(comparison, residual, paths, ids.index(most.value))
+            place = lacks_at_place(comparison, residual, paths, ids.index(most.value), on_phase)
             if place is not None:
                 begun[place.axis] = replace(place, share_of_gap=most.share_of_gap * place.share_of_gap)
         for axis in axes.values():
