@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 from ..progress import OnPhase
 from .comparison import Comparison, Residual
 from .loss import robust_cost
+from .onset import CLEAR
 from .pose import Path
 from .result import Region
 from .simulator import Job
@@ -46,9 +47,9 @@ _IN_PART = (1.0, 2.0, 4.0, 8.0)
 _ALONG = (0.05, 0.1, 0.2, 0.5, *_IN_PART)
 # Parts of the way: this share of the body's length each, or so many; fewer where all runs would have more steps.
 _PART_OF_BODY, _MOST_PARTS, _MOST_STEPS = 0.25, 12, 40_000_000
-# Three standard deviations as a logarithm of likelihoods; and what takes less than this share of what the nominal model
-# leaves is not what is missing: of six spots that held a robot the push took 0.51 and more, drag looked like 0.24.
-_CLEAR, _LEAST_TAKEN = 4.5, 1.0 / 3.0
+# What takes less than this share of what the nominal model leaves is not what is missing. A choice, made with six spots
+# known that held a robot, of which a push took 0.51 and more.
+_LEAST_TAKEN = 1.0 / 3.0
 
 
 def lacks_at_place(
@@ -110,7 +111,7 @@ def lacks_at_place(
     there, elsewhere = left(inner, _IN_PART), left(outer, _ALONG)
     nothing = left_by(comparison, residual, trial, path, residual.trials[trial])
     best, rest = float(np.min(there)), min(nothing, float(np.min(elsewhere)))
-    clear = 2.0 * comparison.alike * (_CLEAR + log(there.size + elsewhere.size))
+    clear = 2.0 * comparison.alike * (CLEAR + log(there.size + elsewhere.size))
     if best >= rest - clear or best > (1.0 - _LEAST_TAKEN) * nothing:
         return None
     weights = np.exp(-(there - best) / (2.0 * comparison.alike)).sum(axis=1)
