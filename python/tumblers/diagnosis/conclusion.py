@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..progress import OnPhase
-from .contender import Contender, likeliest, likeliest_first, of_nominal
+from .contender import Contender, likeliest, of_nominal
 from .counterpart import as_good
 from .fitter import Fitter
 from .hypothesis import SECOND
@@ -96,7 +96,7 @@ def resolved(
 def _equally_far(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase) -> list[Contender]:
     """Fit what may be as good as the best as far as that, without what it does not need, and from where the best is."""
     alike, made = fitter.comparison.alike, list(contenders)
-    scores = [c.total + 2.0 * alike * SECOND * (len(c.names) - 1) for c in made]
+    scores = [_score(c, alike) for c in made]
     order = np.argsort(scores, kind="stable").tolist()
     best, open_to = made[order[0]], scores[order[0]] + 2.0 * alike * OPEN
     # All against one noise: what does as the best does may have stopped beside its valley.
@@ -107,7 +107,7 @@ def _equally_far(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase)
     explaining = [len(c.names) <= len(best.names) and cost < worst for c, cost in zip(made, costs, strict=True)]
     near = [k for k in order if scores[k] < open_to or explaining[k]]
     if len(near) == 1:
-        return made
+        return [made[k] for k in order]
     # Pairs fit better, and must not take the places of what may be named instead of them; nor must what another's noise
     # flatters.
     pairs = [k for k in near if len(made[k].names) > 1][:_PAIRS_EQUALLY_FAR]
@@ -123,7 +123,14 @@ def _equally_far(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase)
     for n, k in enumerate(singles[1:]):
         tell("from where the best is", n, len(singles) - 1)
         made[k] = _from_counterparts(fitter, made[k], made[singles[0]])
-    return likeliest_first(made)
+    # A pair that adds less than a second effect must neither leads nor lends its noise: that would favour its own parts
+    # before others that do the same.
+    return sorted(made, key=lambda contender: _score(contender, alike))
+
+
+def _score(contender: Contender, alike: float) -> float:
+    """Return a contender's total with what a second effect must add."""
+    return contender.total + 2.0 * alike * SECOND * (len(contender.names) - 1)
 
 
 def _from_counterparts(fitter: Fitter, contender: Contender, best: Contender) -> Contender:
