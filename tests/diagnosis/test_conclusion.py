@@ -130,7 +130,7 @@ def test_the_last_fits_start_from_where_the_best_of_all_is(monkeypatch: pytest.M
 
     monkeypatch.setattr("tumblers.diagnosis.conclusion._from_counterparts", noted)
     found = _equally_far(fitter, [pair, worse, stuck], quiet)
-    # Nor does that pair lead, and lend its noise to one of its parts.
+    # Nor does that pair lead.
     assert len(found[0].names) == 1
     made = {contender.names: contender for contender in found}
     ((contender, best),) = asked
