@@ -129,15 +129,30 @@ def test_the_last_fits_start_from_where_the_best_of_all_is(monkeypatch: pytest.M
         return contender
 
     monkeypatch.setattr("tumblers.diagnosis.conclusion._from_counterparts", noted)
-    found = _equally_far(fitter, [pair, worse, stuck], quiet)
-    # Nor does that pair lead.
-    assert len(found[0].names) == 1
-    made = {contender.names: contender for contender in found}
+    made = {contender.names: contender for contender in _equally_far(fitter, [pair, worse, stuck], quiet)}
     ((contender, best),) = asked
     assert {contender.names, best.names} == {tilt.names, stuck.names}
     assert best.total == min(made[names].total for names in (tilt.names, stuck.names))
     # As it is fitted by then, not as it came.
     assert best.total < min(worse.total, stuck.total) - CLEAR
+
+
+@pytest.mark.parametrize(("short", "leads"), [(5.0, False), (-5.0, True)])
+def test_a_pair_leads_where_its_second_effect_adds_what_it_must(
+    monkeypatch: pytest.MonkeyPatch, short: float, leads: bool
+) -> None:
+    fitter, tilt, gradient = _tilt_and_gradient()
+    assert tilt.fit is not None
+    assert gradient.fit is not None
+    pair = settled_at(fitter, tilt.fit.hypothesis + gradient.fit.hypothesis, np.concatenate([tilt.point, np.zeros(4)]))
+    # Ahead by what a second effect must add, or by a little less: likelier than either effect alone all the same.
+    ahead = 2.0 * fitter.comparison.alike * SECOND - short
+    pair = replace(pair, cost=pair.cost + tilt.total - pair.total - ahead)
+    monkeypatch.setattr("tumblers.diagnosis.conclusion.as_far", lambda _fitter, contender, _alike: contender)
+    monkeypatch.setattr("tumblers.diagnosis.conclusion.nested", lambda _fitter, single, _pairs: single)
+    monkeypatch.setattr("tumblers.diagnosis.conclusion._from_counterparts", lambda _fitter, other, _best: other)
+    found = _equally_far(fitter, [pair, tilt, gradient], quiet)
+    assert found[0].names == (pair.names if leads else tilt.names)
 
 
 def test_a_lead_around_another_is_against_one_noise_which_both_follow() -> None:

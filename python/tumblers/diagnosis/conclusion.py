@@ -11,10 +11,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..progress import OnPhase
-from .contender import Contender, likeliest, of_nominal
+from .contender import Contender, likeliest, of_nominal, parsimonious_total
 from .counterpart import as_good
 from .fitter import Fitter
-from .hypothesis import SECOND
 from .own_noise import MOST_OWN, OWN, again, against_the_best, by_itself, each_by_itself, settled, settled_at
 from .pairs import AS_GOOD, nested
 from .sparse import as_far
@@ -96,7 +95,7 @@ def resolved(
 def _equally_far(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase) -> list[Contender]:
     """Fit what may be as good as the best as far as that, without what it does not need, and from where the best is."""
     alike, made = fitter.comparison.alike, list(contenders)
-    scores = [_score(c, alike) for c in made]
+    scores = [parsimonious_total(c, alike) for c in made]
     order = np.argsort(scores, kind="stable").tolist()
     best, open_to = made[order[0]], scores[order[0]] + 2.0 * alike * OPEN
     # All against one noise: what does as the best does may have stopped beside its valley.
@@ -125,12 +124,7 @@ def _equally_far(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase)
         made[k] = _from_counterparts(fitter, made[k], made[singles[0]])
     # A pair that adds less than a second effect must neither leads nor lends its noise: that would favour its own parts
     # before others that do the same.
-    return sorted(made, key=lambda contender: _score(contender, alike))
-
-
-def _score(contender: Contender, alike: float) -> float:
-    """Return a contender's total with what a second effect must add."""
-    return contender.total + 2.0 * alike * SECOND * (len(contender.names) - 1)
+    return sorted(made, key=lambda contender: parsimonious_total(contender, alike))
 
 
 def _from_counterparts(fitter: Fitter, contender: Contender, best: Contender) -> Contender:

@@ -12,9 +12,10 @@ from ..effects.base import Effect
 from .comparison import Residual
 from .fit import Fit
 from .fitter import Fitter
+from .hypothesis import SECOND
 from .step_credit import step_credit
 
-__all__ = ["Contender", "likeliest", "likeliest_first", "of_fit", "of_nominal"]
+__all__ = ["Contender", "likeliest", "likeliest_first", "of_fit", "of_nominal", "parsimonious_total"]
 
 Floats = NDArray[np.float64]
 
@@ -101,6 +102,19 @@ def likeliest_first(contenders: Iterable[Contender]) -> list[Contender]:
 def likeliest(contenders: Iterable[Contender]) -> Contender:
     """Return the likeliest of some contenders, the first of equals."""
     return min(contenders, key=_total)
+
+
+def parsimonious_total(contender: Contender, alike: float) -> float:
+    """Return a contender's total with what a second effect has to take off it (`SECOND`).
+
+    Parameters
+    ----------
+    contender
+        Of one or two effects.
+    alike
+        How many numbers count as one.
+    """
+    return contender.total + 2.0 * alike * SECOND * (len(contender.names) - 1)
 
 
 def _total(contender: Contender) -> float:

@@ -18,10 +18,10 @@ from ..effects.base import Effect
 from ..progress import OnPhase
 from .beginnings import MANY, beginning, from_beginnings, from_its_own_beginning, promise
 from .conclusion import concluded, resolved
-from .contender import Contender, likeliest, likeliest_first, of_fit, of_nominal
+from .contender import Contender, likeliest, likeliest_first, of_fit, of_nominal, parsimonious_total
 from .counterpart import with_counterparts
 from .fitter import Fitter
-from .hypothesis import SECOND, Hypothesis
+from .hypothesis import Hypothesis
 from .nearby import all_shaken, shaken
 from .own_noise import IDLE_POINTS, MOST_OWN, NEAR, OWN, again, by_itself, settled
 from .pairs import AS_GOOD, Pairs, firsts, nested
@@ -298,7 +298,7 @@ class Search:
 
     def _is_named(self, pair: Contender, single: Contender) -> bool:
         """Return whether a pair would be named beside one effect; else, where that leaves no gap, it is no answer."""
-        return pair.total < single.total - 2.0 * self.comparison.alike * SECOND
+        return parsimonious_total(pair, self.comparison.alike) < single.total
 
     def _exchanged(self, found: Sequence[Contender], singles: Sequence[Contender]) -> list[Contender]:
         """Exchange either effect of the best pair: one may be the answer to another that is wrong."""
