@@ -341,8 +341,8 @@ def _assumptions(comparison: Comparison, attribution: Attribution) -> tuple[str,
         "A substrate that is tilted, rough or sticky is so alike under every trial's start.",
         f"The nominal numbers may be off by these standard deviations: {nominal}.",
         "What halving the step changes is part of the noise, around each hypothesis that counts for itself, and in "
-        "each trial as much of it as makes the differences likeliest. One that comes near the likeliest, and says the "
-        "same against either's noise, may be held against the likeliest's.",
+        "each trial as much of it as makes the differences likeliest. One that comes near the best, and says the "
+        "same against either's noise, may be held against the best's.",
         "Data that were themselves computed in a coarse step"
         + ("" if given else " by the formats' own torque scheme")
         + " are no gap: the change to it is fitted in every hypothesis.",
