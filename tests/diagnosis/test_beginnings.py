@@ -39,6 +39,20 @@ def test_the_wavelength_of_a_roughness_is_found_from_the_beginnings() -> None:
     assert_allclose(effect.sine_m, truth.sine_m, atol=5e-7)
 
 
+def test_a_relief_that_holds_the_robot_is_found_from_one_as_steep_and_not_from_a_shallow_one() -> None:
+    truth = SurfaceRoughness(wavelength_m=2.91e-3, cosine_m=(2e-5, 3.9e-6, -4e-6), sine_m=(-9.7e-6, -1.15e-5, -1.21e-5))
+    dataset = measure(plan(PLANS[:2], duration_s=0.8), (truth,))
+    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
+    (hypothesis,) = Search(fitter, [SurfaceRoughness], quiet, 0).possible
+    astray = of_fit(fitter, fitter.fit(hypothesis, hypothesis.starts[2], evaluations=2))
+    # The first amplitude of the sine is all that the shallow ones have.
+    others = np.delete(hypothesis.close, 4, axis=1)[:, 1:]
+    shallow = replace(hypothesis, close=hypothesis.close[~others.any(axis=1)])
+    assert 10 < len(shallow.close) < 20
+    left, found = (from_beginnings(fitter, astray, [h], 0).total for h in (shallow, hypothesis))
+    assert found < left - 300.0
+
+
 def test_a_wavelength_that_is_a_little_off_finds_its_way_over_the_beginnings_and_not_over_whole_trials() -> None:
     truth = SurfaceRoughness(wavelength_m=1.5e-3, cosine_m=(0.0, 1e-6, 4e-6), sine_m=(0.0, -4e-6, -2e-6))
     off = replace(truth, wavelength_m=1.02 * truth.wavelength_m)

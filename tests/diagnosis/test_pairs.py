@@ -76,3 +76,40 @@ def test_an_effect_alone_is_fitted_as_far_as_in_a_pair() -> None:
     assert nested(fitter, other, [replace(pair, names=("size_error", "substrate_tilt"))]) is other
     assert nested(fitter, found, [pair]) is found
     assert nested(fitter, stopped, []) is stopped
+
+
+def test_two_are_joined_from_all_and_from_halves_of_what_either_is_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    fitter = coarse_lab(SizeError(length_factor=1.1))
+    fitter.take_likeliest_noise(())
+    size, friction = (
+        Hypothesis.of(kind, [fitter.comparison.simulator.nominal(i) for i in fitter.trials])
+        for kind in (SizeError, FrictionCoefficient)
+    )
+    singles = [
+        of_fit(fitter, fitter.fit(h, point, evaluations=1))
+        for h, point in ((size, np.array([0.4, 0.0])), (friction, np.array([-0.2])))
+    ]
+    tried: list[list[float]] = []
+    started: list[list[float]] = []
+    residuals, fit = Fitter.residuals, Fitter.fit
+
+    def noted(self: Fitter, hypothesis: Hypothesis, points: Any, *rest: Any) -> Any:
+        if len(hypothesis.names) == 2 and not started:
+            tried.extend(point.tolist() for point in points)
+        return residuals(self, hypothesis, points, *rest)
+
+    def begun(self: Fitter, hypothesis: Hypothesis, start: Any, *rest: Any, **more: Any) -> Any:
+        started.append(start.tolist())
+        return fit(self, hypothesis, start, *rest, **more)
+
+    monkeypatch.setattr(Fitter, "residuals", noted)
+    monkeypatch.setattr(Fitter, "fit", begun)
+    pairs = Pairs(fitter, [size, friction], {})
+    pairs.join(singles)
+    assert tried == [[0.4, 0.0, -0.2], [0.4, 0.0, -0.1], [0.2, 0.0, -0.2], [0.2, 0.0, -0.1]]
+    # The best of them is fitted on.
+    (pair,) = pairs.likeliest_first()
+    joined, whole = size + friction, fitter.trials
+    costs = [fitter.cost(fitter.residuals(joined, [np.array(p)])[0], np.array(p), whole) for p in tried]
+    assert started == [tried[int(np.argmin(costs))]]
+    assert pair.cost <= min(costs)

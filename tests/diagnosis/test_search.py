@@ -13,8 +13,10 @@ from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.contender import Contender, of_fit, of_nominal
 from tumblers.diagnosis.fitter import Fitter
 from tumblers.diagnosis.own_noise import NEAR, OWN, beside
+from tumblers.diagnosis.pair_search import PairSearch, kept
 from tumblers.diagnosis.pairs import Pairs
-from tumblers.diagnosis.search import Search, _kept
+from tumblers.diagnosis.refined import refined
+from tumblers.diagnosis.search import Search
 from tumblers.diagnosis.simulator import LONGEST_STEP_S, Simulator
 from tumblers.effects.catalogue import CATALOGUE
 from tumblers.effects.magnetization_strength import MagnetizationStrength
@@ -77,12 +79,12 @@ def test_either_of_a_pair_that_only_the_right_steps_put_first_is_exchanged(
     found = [ranked[first], *(pair for pair in ranked if pair is not ranked[first]), *singles]
     called: list[tuple[Sequence[Contender], Sequence[Contender]]] = []
 
-    def spied(pairs: Sequence[Contender], singles: Sequence[Contender]) -> list[Contender]:
+    def spied(_: PairSearch, pairs: Sequence[Contender], singles: Sequence[Contender]) -> list[Contender]:
         called.append((pairs, singles))
         return list(pairs)
 
-    monkeypatch.setattr(search, "_exchanged", spied)
-    monkeypatch.setattr(search, "_is_named", lambda *_: named)
+    monkeypatch.setattr(PairSearch, "exchanged", spied)
+    monkeypatch.setattr(PairSearch, "is_named", lambda *_: named)
     monkeypatch.setattr("tumblers.diagnosis.search.is_wanting", lambda *_: False)
     made = search._in_short_steps(found)
     assert made[0].names == ranked[0].names
@@ -110,9 +112,9 @@ def test_what_was_settled_does_not_give_way_to_what_was_not() -> None:
     fitter.take_likeliest_noise(())
     made = of_nominal(fitter)
     old, new, better = replace(made, settled=True), replace(made, cost=-9.0), replace(made, cost=-9.0, settled=True)
-    for contender, kept in ((new, old), (better, better)):
-        assert _kept([contender], [old]) == [kept]
-    assert _kept([new], [replace(old, settled=False)]) == [new]
+    for contender, expected in ((new, old), (better, better)):
+        assert kept([contender], [old]) == [expected]
+    assert kept([new], [replace(old, settled=False)]) == [new]
 
 
 @pytest.mark.parametrize("enough", [False, True])
@@ -134,9 +136,9 @@ def test_more_firsts_are_tried_where_every_pair_leaves_a_gap(enough: bool, monke
             add(pairs, first, others)
 
     monkeypatch.setattr(Pairs, "add", spied)
-    monkeypatch.setattr(search, "_is_enough", lambda _: enough)
-    monkeypatch.setattr("tumblers.diagnosis.search.is_wanting", lambda *_: True)
-    assert search._pairs(singles, strong=True)
+    monkeypatch.setattr("tumblers.diagnosis.pair_search.is_enough", lambda *_: enough)
+    monkeypatch.setattr("tumblers.diagnosis.pair_search.is_wanting", lambda *_: True)
+    assert search.pairing.found(singles, strong=True)
     # What is exchanged later is another contender of the same name.
     assert [any(first is single for first in tried) for single in singles] == [True, True, *(3 * [not enough]), False]
 
@@ -161,13 +163,13 @@ def test_of_many_parameters_the_best_is_searched_over_its_range_and_another_pair
         sought.append(("here", contender))
         return contender
 
-    monkeypatch.setattr("tumblers.diagnosis.search.from_beginnings", over_the_range)
-    monkeypatch.setattr("tumblers.diagnosis.search.from_its_own_beginning", from_where_it_is)
+    monkeypatch.setattr("tumblers.diagnosis.refined.from_beginnings", over_the_range)
+    monkeypatch.setattr("tumblers.diagnosis.refined.from_its_own_beginning", from_where_it_is)
     for contenders, expected in (
         ([pair, few], [("range", pair), ("range", few)]),
         ([few, pair], [("range", few), ("here", pair)]),
         ([few, many, pair], [("range", few)]),
     ):
         sought.clear()
-        search._refined(contenders, 2)
+        refined(fitter, contenders, 2, search.possible, 0, quiet)
         assert sought == expected

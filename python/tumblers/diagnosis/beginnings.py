@@ -22,9 +22,10 @@ Floats = NDArray[np.float64]
 # the trials' time are fitted one after another, the best alone after the first, in so many trial points; then all.
 _EVEN, _BY_DECADE, _DECADES = (8, 32), (16, 64), 1.7
 _BEST, _STAGES, _STAGE_POINTS, _LAST_POINTS = 3, (0.25, 0.5), 4, 6
-# Of more parameters than this, points over the range tell nothing: from where it is and from all close starts, then
-# from the best so many, these shares are fitted.
-MANY, _FOLLOWED = 4, ((0.1, None), (0.25, 4), (0.5, 2))
+# Of more parameters than this, points over the range tell nothing: from where it is and from the close starts, these
+# shares are fitted one after another, each from the best so many of before, then all from the best of these. Over a
+# first beginning many do as well as the right one.
+MANY, _FOLLOWED, _ENDS = 4, ((0.1, 32), (0.25, 12), (0.5, 4)), 2
 
 
 def from_beginnings(fitter: Fitter, contender: Contender, possible: Sequence[Hypothesis], seed: int) -> Contender:
@@ -48,11 +49,9 @@ def from_beginnings(fitter: Fitter, contender: Contender, possible: Sequence[Hyp
     fitter.take_likeliest_noise(contender.effects)
     hypothesis = contender.fit.hypothesis
     if contender.free > MANY:
-        point = _followed(fitter, contender, possible, tracked)
-    else:
-        sampled = [point for _, point in _sampled(fitter, contender, seed, tracked, _BEST)]
-        point = _staged(fitter, hypothesis, sampled, tracked)
-    return _fitted(fitter, contender, point)
+        return _fitted(fitter, contender, _followed(fitter, contender, possible, tracked))
+    sampled = [point for _, point in _sampled(fitter, contender, seed, tracked, _BEST)]
+    return _fitted(fitter, contender, [_staged(fitter, hypothesis, sampled, tracked)])
 
 
 def from_its_own_beginning(fitter: Fitter, contender: Contender) -> Contender:
@@ -73,14 +72,14 @@ def from_its_own_beginning(fitter: Fitter, contender: Contender) -> Contender:
         return contender
     assert contender.fit is not None
     fitter.take_likeliest_noise(contender.effects)
-    return _fitted(fitter, contender, _followed_from(fitter, contender, [contender.point], tracked)[1])
+    return _fitted(fitter, contender, [_followed_from(fitter, contender, [contender.point], tracked)[0][1]])
 
 
-def _fitted(fitter: Fitter, contender: Contender, start: Floats) -> Contender:
-    """Fit a contender to all of the trials from a start, and keep what is better against the noise of the moment."""
+def _fitted(fitter: Fitter, contender: Contender, starts: Sequence[Floats]) -> Contender:
+    """Fit a contender to all of the trials from some starts, and keep what is best against the noise of the moment."""
     assert contender.fit is not None
-    fit = fitter.fit(contender.fit.hypothesis, start, evaluations=_LAST_POINTS)
-    return of_fit(fitter, min(fitter.again(contender.fit), fit, key=lambda fit: fit.cost))
+    fits = [fitter.fit(contender.fit.hypothesis, start, evaluations=_LAST_POINTS) for start in starts]
+    return of_fit(fitter, min([fitter.again(contender.fit), *fits], key=lambda fit: fit.cost))
 
 
 def promise(fitter: Fitter, contender: Contender, seed: int) -> float:
@@ -154,24 +153,30 @@ def _staged(fitter: Fitter, hypothesis: Hypothesis, points: Sequence[Floats], tr
     return points[0]
 
 
-def _followed(fitter: Fitter, contender: Contender, possible: Sequence[Hypothesis], tracked: tuple[int, ...]) -> Floats:
-    """Return the point that is best after fits from where a contender is and from all close starts."""
-    # Over the first beginnings many do as well as the right one: where it is does not have to beat them there.
-    starts = [contender.point], _starts_within(contender, possible)
-    return min((_followed_from(fitter, contender, points, tracked) for points in starts), key=lambda end: end[0])[1]
+def _followed(
+    fitter: Fitter, contender: Contender, possible: Sequence[Hypothesis], tracked: tuple[int, ...]
+) -> list[Floats]:
+    """Return the best points after fits from where a contender is and from the close starts."""
+    assert contender.fit is not None
+    share, count = _FOLLOWED[0]
+    close = least(fitter, contender.fit.hypothesis, _starts_within(contender, possible), count, tracked, share)
+    # Where it is does not have to beat the others over the first beginnings.
+    ends = _followed_from(fitter, contender, [contender.point], tracked)
+    ends += _followed_from(fitter, contender, [point for _, point in close], tracked)
+    return [point for _, point in sorted(ends, key=lambda end: end[0])[:_ENDS]]
 
 
 def _followed_from(
     fitter: Fitter, contender: Contender, points: Sequence[Floats], tracked: tuple[int, ...]
-) -> tuple[float, Floats]:
-    """Return the best end of fits from some points, fewer of them over more of the trials, with its objective."""
+) -> list[tuple[float, Floats]]:
+    """Return the ends of fits from some points, fewer of them over more of the trials, with their objective."""
     assert contender.fit is not None
     ends: list[tuple[float, Floats]] = []
     for stage, count in _FOLLOWED:
         ends = [fitter.descend(contender.fit.hypothesis, p, tracked, _STAGE_POINTS, stage) for p in points[:count]]
         ends.sort(key=lambda end: end[0])
         points = [point for _, point in ends]
-    return ends[0]
+    return ends
 
 
 def _starts_within(contender: Contender, possible: Sequence[Hypothesis]) -> list[Floats]:

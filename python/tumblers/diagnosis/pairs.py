@@ -30,8 +30,10 @@ Floats = NDArray[np.float64]
 AS_GOOD = 0.5
 # A first leaves no more than so much of the best one's objective beyond it.
 _NEAR_BEST = 0.5
-# Seconds that are fitted with each first; singles that are joined two and two, and joints that are fitted.
-_SECONDS, _JOINED, _JOINTS = 3, 4, 2
+# Seconds that are fitted with each first; singles that are joined two and two, shares of what each is by itself, and
+# joints that are fitted. Of two that do much the same either alone does what both do, and of each a half is missing.
+_SECONDS, _JOINED, _JOINTS = 3, 8, 4
+_HALVES = ((1.0, 1.0), (1.0, 0.5), (0.5, 1.0), (0.5, 0.5))
 # Shares of the way to either end of a range that are tried of what may stand in another's place.
 _GRID = (0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 1.0)
 # Trial points of a fit.
@@ -127,7 +129,7 @@ class Pairs:
             self._keep(both, start)
 
     def join(self, singles: Sequence[Contender]) -> None:
-        """Fit the best of the best singles two and two, from each one's own best and from halves.
+        """Fit the best of the best singles two and two, from each one's own best and from halves, against its noise.
 
         Parameters
         ----------
@@ -140,9 +142,7 @@ class Pairs:
             assert first.fit is not None
             assert second.fit is not None
             both = first.fit.hypothesis + second.fit.hypothesis
-            points = [
-                np.concatenate([a * first.point, b * second.point]) for a, b in ((1.0, 1.0), (1.0, 0.5), (0.5, 1.0))
-            ]
+            points = [np.concatenate([a * first.point, b * second.point]) for a, b in _HALVES]
             for point, residual in zip(points, self.fitter.residuals(both, points), strict=True):
                 tried.append((self.fitter.cost(residual, point), len(tried), both, point))
         tried.sort(key=lambda entry: entry[:2])

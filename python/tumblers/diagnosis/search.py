@@ -16,16 +16,18 @@ from numpy.typing import NDArray
 
 from ..effects.base import Effect
 from ..progress import OnPhase
-from .beginnings import MANY, beginning, from_beginnings, from_its_own_beginning, promise
+from .beginnings import MANY, beginning, from_beginnings, promise
 from .conclusion import concluded, resolved
-from .contender import Contender, likeliest, likeliest_first, of_fit, of_nominal, parsimonious_total
+from .contender import Contender, likeliest, likeliest_first, of_fit, of_nominal
 from .counterpart import with_counterparts
 from .fitter import Fitter
 from .hypothesis import Hypothesis
 from .nearby import all_shaken, shaken
 from .own_noise import IDLE_POINTS, MOST_OWN, NEAR, OWN, again, by_itself, settled
-from .pairs import AS_GOOD, Pairs, firsts, nested
+from .pair_search import PairSearch, is_enough
+from .pairs import AS_GOOD, nested
 from .predictive import is_right, is_wanting
+from .refined import refined, to_refine
 from .thresholds import CLEAR, beyond_thresholds
 
 __all__ = ["Search"]
@@ -44,12 +46,6 @@ _REFINED, _PROMISING = 2, 4
 # The leader of before, found farther away, is a new first of pairs where that takes more than this share of what it
 # leaves off the objective.
 _FARTHER = 0.1
-# Effects to which a second is added: the farther ones only where the best leaves a gap, more only where all pairs do.
-_FIRSTS, _MORE_FIRSTS = 2, 5
-# Pairs whose beginnings are searched.
-_PAIRS_REFINED = 2
-# How often the best may change by an exchange.
-_ROUNDS = 2
 
 
 class Search:
@@ -81,6 +77,11 @@ class Search:
         """Names of the effects that can be at work in these trials."""
         return [hypothesis.names[0] for hypothesis in self.possible]
 
+    @property
+    def pairing(self) -> PairSearch:
+        """The search for pairs of what is possible."""
+        return PairSearch(self.fitter, self.possible, self.hints, self.worth, self.tell, self.seed)
+
     def contenders(self) -> list[Contender]:
         """Return the nominal model and what was fitted, those that count against their own noise or the best's."""
         self.fitter.take_likeliest_noise(())
@@ -104,7 +105,7 @@ class Search:
         if singles[0].total > nominal.total - self.worth:
             return concluded(self.fitter, nominal, singles, self.tell)
         singles = all_shaken(self.fitter, singles, self.seed, self.tell)
-        made = self._with_shaken_pair(singles, self._pairs(singles, strong=False))
+        made = self._with_shaken_pair(singles, self.pairing.found(singles, strong=False))
         return concluded(self.fitter, nominal, made, self.tell)
 
     def _of_strong(self, nominal: Contender) -> list[Contender]:
@@ -136,8 +137,8 @@ class Search:
         singles, pairs = ([c for c in made if len(c.names) == count] for count in (1, 2))
         wanting = is_wanting(self.comparison, singles[0].residual)
         # Where in longer steps another led, it was the effects of that which were exchanged.
-        if set(pairs[0].names) != set(found[0].names) and (wanting or self._is_named(pairs[0], singles[0])):
-            exchanged = self._exchanged(pairs, singles)
+        if set(pairs[0].names) != set(found[0].names) and (wanting or self.pairing.is_named(pairs[0], singles[0])):
+            exchanged = self.pairing.exchanged(pairs, singles)
             if exchanged[0].names != pairs[0].names:
                 exchanged[0] = shaken(self.fitter, exchanged[0], self.seed, self.tell)
             made = likeliest_first([*singles, *exchanged])
@@ -153,23 +154,23 @@ class Search:
         singles = settled(self.fitter, singles, self.tell, OWN, MOST_OWN)
         singles = all_shaken(self.fitter, singles, self.seed, self.tell)
         pairs: list[Contender] = []
-        refined: set[tuple[str, ...]] = set()
+        known: set[tuple[str, ...]] = set()
         worth = nominal.total - self.worth
         if is_wanting(self.comparison, singles[0].residual):
-            refined = {singles[k].names for k in _to_refine(singles, _REFINED)}
-            singles = settled(self.fitter, self._refined(singles, _REFINED), self.tell)
+            known = {singles[k].names for k in to_refine(singles, _REFINED)}
+            singles = settled(self.fitter, self._refined(singles), self.tell)
         if singles[0].total <= worth:
-            pairs = self._pairs(singles, strong=True)
+            pairs = self.pairing.found(singles, strong=True)
         # Where two effects leave no gap, what is far away is not looked for.
-        if not self._is_enough([*singles, *pairs]):
-            far = settled(self.fitter, self._far(singles, refined), self.tell)
+        if not is_enough(self.comparison, [*singles, *pairs]):
+            far = settled(self.fitter, self._far(singles, known), self.tell)
             near, singles = singles, far
             more = CLEAR if near[0].names != far[0].names else max(CLEAR, _FARTHER * far[0].cost)
             untried = near[0].total > worth
             if far[0].total <= worth and (untried or near[0].total - far[0].total > more):
-                pairs = self._pairs(singles, strong=True, known=pairs)
+                pairs = self.pairing.found(singles, strong=True, known=pairs)
         elif not (pairs and pairs[0].total < singles[0].total - self.worth):
-            singles = settled(self.fitter, self._elsewhere(singles, refined), self.tell)
+            singles = settled(self.fitter, self._elsewhere(singles, known), self.tell)
         made = self._with_shaken_pair(singles, pairs) if singles[0].total <= worth else [*singles, *pairs]
         made = likeliest_first(made)
         return with_counterparts(self.fitter, made, self.possible, self.tell) if made[0].total <= worth else made
@@ -181,21 +182,21 @@ class Search:
         pairs = likeliest_first([shaken(self.fitter, pairs[0], self.seed, self.tell), *pairs[1:]])
         return likeliest_first([nested(self.fitter, singles[0], pairs[:1]), *singles[1:], *pairs])
 
-    def _far(self, singles: Sequence[Contender], refined: Collection[tuple[str, ...]]) -> list[Contender]:
-        """Search far away for those that no local fit can be trusted with, but for those that were refined."""
+    def _far(self, singles: Sequence[Contender], known: Collection[tuple[str, ...]]) -> list[Contender]:
+        """Search far away for those that no local fit can be trusted with, but for those that were searched so."""
         made = list(singles)
         self.tell("points over the whole range", _REFINED, _REFINED)
         self.fitter.take_likeliest_noise(made[0].effects)
-        few = [k for k, c in enumerate(made) if c.free <= MANY and c.names not in refined]
+        few = [k for k, c in enumerate(made) if c.free <= MANY and c.names not in known]
         promises = {k: promise(self.fitter, made[k], self.seed) for k in few}
         promising = sorted(few, key=lambda k: -promises[k])[:_PROMISING]
         for k, contender in enumerate(made):
-            many = contender.free > MANY and contender.names not in refined
+            many = contender.free > MANY and contender.names not in known
             if many or (k in promising and promises[k] > CLEAR):
                 made[k] = from_beginnings(self.fitter, contender, self.possible, self.seed)
         return likeliest_first(made)
 
-    def _elsewhere(self, singles: Sequence[Contender], refined: Collection[tuple[str, ...]]) -> list[Contender]:
+    def _elsewhere(self, singles: Sequence[Contender], known: Collection[tuple[str, ...]]) -> list[Contender]:
         """Search far away for effects of one parameter too where another leaves no gap: one of them may be the cause.
 
         Those are fitted that follow the beginnings of the trials about as well.
@@ -205,7 +206,7 @@ class Search:
         self.fitter.take_likeliest_noise(best.effects)
         goal = beginning(self.fitter, best)
         for k, contender in enumerate(made):
-            if k == 0 or contender.free > 1 or contender.names in refined:
+            if k == 0 or contender.free > 1 or contender.names in known:
                 continue
             wanted = (1.0 - AS_GOOD) * (beginning(self.fitter, contender) - goal)
             if promise(self.fitter, contender, self.seed) > max(CLEAR, wanted):
@@ -229,12 +230,6 @@ class Search:
             singles = self._searched(nominal, singles)
         return likeliest_first(singles)
 
-    def _is_enough(self, contenders: Sequence[Contender]) -> bool:
-        best = likeliest(contenders)
-        return not is_wanting(self.comparison, best.residual) or (
-            len(best.names) > 1 and is_right(self.comparison, best.residual)
-        )
-
     def _searched(self, nominal: Contender, singles: Sequence[Contender]) -> list[Contender]:
         """Fit effects of few parameters again from the best point on a line through their ranges."""
         fitter = self.fitter
@@ -252,85 +247,5 @@ class Search:
                     made[k] = likeliest([made[k], other])
         return made
 
-    def _refined(self, contenders: Sequence[Contender], count: int) -> list[Contender]:
-        """Fit the best so many again from points over their whole range, the beginnings of the trials first.
-
-        Where an effect is strong, paths soon have nothing in common any more; their beginnings still have. A pair of
-        many parameters that is not the best starts from where it is and from nowhere else; a single such one stays.
-        """
-        made = list(contenders)
-        wide = _to_refine(made, count)
-        for k, contender in enumerate(made[:count]):
-            self.tell("points over the whole range", k, count)
-            if k in wide:
-                made[k] = from_beginnings(self.fitter, contender, self.possible, self.seed)
-            elif len(contender.names) > 1:
-                made[k] = from_its_own_beginning(self.fitter, contender)
-        return likeliest_first(made)
-
-    def _pairs(self, singles: Sequence[Contender], strong: bool, known: Sequence[Contender] = ()) -> list[Contender]:
-        """Add a second effect to the best, beside pairs that are known; none where none shows."""
-        pairs = Pairs(self.fitter, self.possible, self.hints, known)
-        # A second effect shows beside the best one; beside the next best only where the best leaves a gap.
-        wanting = strong and is_wanting(self.comparison, singles[0].residual)
-        near = firsts(singles[: _FIRSTS if wanting else 1])
-        for n, first in enumerate(near):
-            self.tell("fitting pairs", n, len(near))
-            pairs.add(first, singles)
-        if wanting:
-            pairs.join(singles)
-        found = pairs.likeliest_first()
-        if not found or found[0].total > singles[0].total - self.worth:
-            return found
-        found = _kept(settled(self.fitter, found, self.tell), known)
-        pairs = Pairs(self.fitter, self.possible, self.hints, found)
-        # Where both are strong, either alone may be far from the best.
-        if wanting and not self._is_enough(found):
-            for n, first in enumerate(far := firsts(singles[:_MORE_FIRSTS])[len(near) :]):
-                self.tell("fitting pairs", n, len(far))
-                pairs.add(first, singles)
-            found = _kept(settled(self.fitter, pairs.likeliest_first(), self.tell), found)
-            pairs = Pairs(self.fitter, self.possible, self.hints, found)
-        # However little the best leaves: against a sharper noise another may leave as little.
-        if strong:
-            found = _kept(settled(self.fitter, self._refined(found, _PAIRS_REFINED), self.tell), found)
-        return self._exchanged(found, singles) if wanting or self._is_named(found[0], singles[0]) else found
-
-    def _is_named(self, pair: Contender, single: Contender) -> bool:
-        """Return whether a pair would be named beside one effect; else, where that leaves no gap, it is no answer."""
-        return parsimonious_total(pair, self.comparison.alike) < single.total
-
-    def _exchanged(self, found: Sequence[Contender], singles: Sequence[Contender]) -> list[Contender]:
-        """Exchange either effect of the best pair: one may be the answer to another that is wrong."""
-        made, held = list(found), set[str]()
-        for n in range(_ROUNDS):
-            self.tell("exchanging one of the pair", n, _ROUNDS)
-            best = made[0]
-            assert best.fit is not None
-            pairs = Pairs(self.fitter, self.possible, self.hints, made)
-            for kind, other in zip(best.fit.hypothesis.kinds, best.names[::-1], strict=True):
-                if other not in held:
-                    pairs.exchange(best, kind, singles)
-                    held.add(other)
-            made = _kept(settled(self.fitter, pairs.likeliest_first(), self.tell), made)
-            if made[0].names == best.names:
-                break
-        return made
-
-
-def _kept(found: Sequence[Contender], before: Sequence[Contender]) -> list[Contender]:
-    """Return what was found, the likeliest first, but what was settled before where that is likelier or the new is not.
-
-    What looks better against another's noise must not take its place.
-    """
-    known = {frozenset(contender.names): contender for contender in before if contender.settled}
-    made = []
-    for contender in found:
-        old = known.get(frozenset(contender.names), contender)
-        made.append(likeliest([contender, old]) if contender.settled else old)
-    return likeliest_first(made)
-
-
-def _to_refine(contenders: Sequence[Contender], count: int) -> list[int]:
-    """Return the places, of the first so many, of the best one and of those with few parameters."""
-    return [k for k, contender in enumerate(contenders[:count]) if k == 0 or contender.free <= MANY]
+    def _refined(self, singles: Sequence[Contender]) -> list[Contender]:
+        return refined(self.fitter, singles, _REFINED, self.possible, self.seed, self.tell)

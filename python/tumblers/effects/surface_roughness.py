@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cache
 from itertools import zip_longest
+from math import pi
 from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from scipy.stats import qmc
 
 from ..check import Vector
 from ..errors import InputError, show
@@ -17,9 +22,12 @@ if TYPE_CHECKING:
 
 __all__ = ["SurfaceRoughness"]
 
-# Where a relief is shallow, a fit finds its way from one to the next; where it is not, from one of the closer ones.
+# Where a relief is shallow, a fit finds its way from one to the next; where it is not, from one of the closer ones; and
+# where it is steep enough to hold the robot or let it slide, from a steep one alone: so many of them, with slopes (root
+# mean square) between these, all three waves of which lean alike.
 _WAVELENGTHS_M = (0.7e-3, 1.0e-3, 1.5e-3, 2.2e-3, 3.3e-3, 4.8e-3, 7.0e-3)
 _CLOSE_RATIO, _CLOSE_COUNT = 1.217, 13
+_RELIEFS, _SLOPES = 256, (0.01, 0.25)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -89,7 +97,7 @@ class SurfaceRoughness(Effect):
 
     @classmethod
     def close_starts(cls, scenario: Scenario) -> tuple[tuple[float, ...], ...]:  # noqa: ARG003
-        """Return more wavelengths, each with a smaller first wave.
+        """Return more wavelengths, each with a smaller first wave, and reliefs of all three waves.
 
         Parameters
         ----------
@@ -97,7 +105,8 @@ class SurfaceRoughness(Effect):
             The nominal scenario.
         """
         wavelengths = (_WAVELENGTHS_M[0] * _CLOSE_RATIO**k for k in range(_CLOSE_COUNT))
-        return tuple((wavelength, 0.0, 0.0, 0.0, 2e-6, 0.0, 0.0) for wavelength in wavelengths)
+        waves = tuple((wavelength, 0.0, 0.0, 0.0, 2e-6, 0.0, 0.0) for wavelength in wavelengths)
+        return waves + _reliefs(tuple((p.low, p.high) for p in cls.parameters))
 
     def act(self, scenario: Scenario) -> Scenario:
         """Return the scenario with its substrate's heights added.
@@ -116,6 +125,22 @@ class SurfaceRoughness(Effect):
             raise InputError(f"{self.name}.wavelength_m", show(self.wavelength_m), expected)
         relief = replace(relief, cosine_m=_sum(relief.cosine_m, self.cosine_m), sine_m=_sum(relief.sine_m, self.sine_m))
         return replace(scenario, relief=relief)
+
+
+@cache
+def _reliefs(ranges: tuple[tuple[float, float], ...]) -> tuple[tuple[float, ...], ...]:
+    """Return reliefs evenly over directions, and over the logarithms of their wavelengths and slopes (Sobol 1967)."""
+    (shortest, longest), (gentle, steep) = ranges[0], _SLOPES
+    drawn = qmc.Sobol(1 + len(ranges), rng=np.random.default_rng(0)).random(_RELIEFS)
+    wavelength = shortest * (longest / shortest) ** drawn[:, 0]
+    slope = gentle * (steep / gentle) ** drawn[:, 1]
+    ways = 2.0 * drawn[:, 2:] - 1.0
+    ways /= np.sqrt(0.5 * np.sum(ways**2, axis=1, keepdims=True))
+    number = np.tile(np.arange(1, 4), 2)
+    amplitudes = ways * (slope * wavelength / (2.0 * pi))[:, None] / number
+    low, high = np.transpose(ranges[1:])
+    points = np.column_stack([wavelength, np.clip(amplitudes, low, high)])
+    return tuple(tuple(point) for point in points.tolist())
 
 
 def _sum(first: tuple[float, ...], second: tuple[float, ...]) -> tuple[float, ...]:
