@@ -131,6 +131,16 @@ def test_a_fit_starts_within_the_range_and_moves_what_is_observed(effect: type[E
 
 
 @EVERY
+def test_a_search_over_the_beginnings_starts_within_the_range(effect: type[Effect]) -> None:
+    scenario = AT_WORK.get(effect.name, ROLLING)
+    starts = effect.close_starts(scenario)
+    assert len(set(starts)) == len(starts) >= len(effect.starts(scenario))
+    for start in starts:
+        assert not effect.from_vector(start).is_neutral()
+        assert all(low <= value <= high for (low, high), value in zip(effect.ranges(scenario), start, strict=True))
+
+
+@EVERY
 @pytest.mark.parametrize("end", [0, 1], ids=["low", "high"])
 def test_the_ends_of_the_ranges_can_be_run(effect: type[Effect], end: int) -> None:
     for scenario in (ROLLING, STATIC):

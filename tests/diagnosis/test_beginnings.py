@@ -39,7 +39,7 @@ def test_the_wavelength_of_a_roughness_is_found_from_the_beginnings() -> None:
     assert_allclose(effect.sine_m, truth.sine_m, atol=5e-7)
 
 
-def test_a_relief_that_holds_the_robot_is_found_from_one_as_steep_and_not_from_a_shallow_one() -> None:
+def test_a_steep_relief_is_followed_farther_from_steep_ones_than_from_shallow_ones() -> None:
     truth = SurfaceRoughness(wavelength_m=2.91e-3, cosine_m=(2e-5, 3.9e-6, -4e-6), sine_m=(-9.7e-6, -1.15e-5, -1.21e-5))
     dataset = measure(plan(PLANS[:2], duration_s=0.8), (truth,))
     fitter = Fitter(Comparison(dataset, Simulator(dataset)))

@@ -18,6 +18,7 @@ from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.effects.magnetization_misalignment import MagnetizationMisalignment
 from tumblers.effects.size_error import SizeError
 from tumblers.effects.stray_field_gradient import StrayFieldGradient
+from tumblers.effects.surface_roughness import SurfaceRoughness
 from tumblers.scenario import Scenario
 
 from .lab import UPWARDS, plan
@@ -84,3 +85,18 @@ def test_what_changes_no_trial_has_no_start() -> None:
     simulator = Simulator(plan())
     both = [simulator.nominal(4), simulator.nominal(0)]
     assert len(Hypothesis.of(FieldRolloff, both).starts) == len(FieldRolloff.starts(both[1]))
+
+
+def test_what_is_weaker_keeps_its_wavelength_its_exponent_and_its_way() -> None:
+    scenario = Simulator(plan()).nominal(0)
+    rough, gradient, magnet = (
+        Hypothesis.of(kind, [scenario]) for kind in (SurfaceRoughness, StrayFieldGradient, MagnetizationMisalignment)
+    )
+    assert_allclose(rough.weakened(np.full(7, 0.4), 0.5), [0.4, *[0.2] * 6])
+    weaker = gradient.weakened(np.full(4, 0.4), 0.5)
+    assert_allclose(weaker, [0.2, 0.2, 0.2, 0.4])
+    # An angle about the axis is no coordinate of its own.
+    full, half = (magnet.values(point) for point in (np.array([0.2, 0.1]), magnet.weakened(np.array([0.2, 0.1]), 0.5)))
+    assert_allclose(half, [0.5 * full[0], full[1]], rtol=1e-9)
+    joined = Hypothesis.of(SizeError, [scenario]) + rough
+    assert_allclose(joined.weakened(np.full(9, 0.4), 0.5), [0.2, 0.2, 0.4, *[0.2] * 6])

@@ -1,4 +1,4 @@
-"""The search for pairs: what is searched far away, and what is not."""
+"""The search for pairs: whose second effects are sought, what is searched far away, and what is kept."""
 
 from __future__ import annotations
 
@@ -9,17 +9,33 @@ import numpy as np
 import pytest
 
 from tumblers.diagnosis.beginnings import MANY
-from tumblers.diagnosis.contender import Contender, of_fit
+from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.contender import Contender, of_fit, of_nominal
 from tumblers.diagnosis.fitter import Fitter
 from tumblers.diagnosis.hypothesis import Hypothesis
-from tumblers.diagnosis.pair_search import PairSearch
+from tumblers.diagnosis.pair_search import PairSearch, kept
+from tumblers.diagnosis.pairs import Pairs
 from tumblers.diagnosis.search import Search
+from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects.camera_calibration import CameraCalibration
+from tumblers.effects.friction_coefficient import FrictionCoefficient
+from tumblers.effects.magnetization_misalignment import MagnetizationMisalignment
 from tumblers.effects.magnetization_strength import MagnetizationStrength
 from tumblers.effects.size_error import SizeError
+from tumblers.effects.substrate_tilt import SubstrateTilt
 from tumblers.effects.surface_roughness import SurfaceRoughness
+from tumblers.effects.viscous_drag import ViscousDrag
 
-from .lab import coarse_lab, quiet
+from .lab import PLANS, coarse_lab, measure, plan, quiet
+
+KINDS = (
+    SizeError,
+    MagnetizationMisalignment,
+    MagnetizationStrength,
+    FrictionCoefficient,
+    SubstrateTilt,
+    ViscousDrag,
+)
 
 
 @pytest.fixture(scope="module")
@@ -29,10 +45,10 @@ def search() -> Search:
     return Search(coarse_lab(SizeError(length_factor=1.1)), kinds, quiet, 0)
 
 
-def idle(fitter: Fitter, hypothesis: Hypothesis, cost: float) -> Contender:
-    """Return a contender at neutral, as if it had been settled with some objective."""
-    made = of_fit(fitter, fitter.fit(hypothesis, np.zeros(len(hypothesis.neutral)), evaluations=1))
-    return replace(made, cost=cost, settled=True)
+def held(fitter: Fitter, hypothesis: Hypothesis, cost: float) -> Contender:
+    """Return a contender beside neutral, as if it had been settled with some objective."""
+    fit = fitter.fit(hypothesis, np.full(len(hypothesis.neutral), 0.01), evaluations=1)
+    return replace(of_fit(fitter, fit), cost=cost, log_determinant=0.0, step_credit=0.0, settled=True)
 
 
 def as_they_are(_fitter: Fitter, contenders: Sequence[Contender], *_: object) -> list[Contender]:
@@ -40,15 +56,51 @@ def as_they_are(_fitter: Fitter, contenders: Sequence[Contender], *_: object) ->
     return list(contenders)
 
 
-def test_of_many_parameters_what_is_not_among_the_best_pairs_is_searched_far_away_beside_the_best(
+def test_what_was_settled_does_not_give_way_to_what_was_not() -> None:
+    fitter = coarse_lab(SizeError(length_factor=1.1))
+    fitter.take_likeliest_noise(())
+    made = of_nominal(fitter)
+    old, new, better = replace(made, settled=True), replace(made, cost=-9.0), replace(made, cost=-9.0, settled=True)
+    for contender, expected in ((new, old), (better, better)):
+        assert kept([contender], [old]) == [expected]
+    assert kept([new], [replace(old, settled=False)]) == [new]
+
+
+@pytest.mark.parametrize("enough", [False, True])
+def test_more_firsts_are_tried_where_every_pair_leaves_a_gap(enough: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    truth = (SizeError(length_factor=1.2), MagnetizationStrength(factor=0.7))
+    dataset = measure(plan(PLANS[:1]), truth)
+    search = Search(Fitter(Comparison(dataset, Simulator(dataset))), KINDS, quiet, 0)
+    search.fitter.take_likeliest_noise(())
+    nominal = of_nominal(search.fitter)
+    # All as near to the best as a first has to be.
+    singles = [replace(single, cost=nominal.cost) for single in search._singles(nominal)]
+    tried: list[Contender] = []
+    add = Pairs.add
+
+    def spied(pairs: Pairs, first: Contender, others: Sequence[Contender]) -> None:
+        tried.append(first)
+        # One pair is enough to go on with.
+        if len(tried) == 1:
+            add(pairs, first, others)
+
+    monkeypatch.setattr(Pairs, "add", spied)
+    monkeypatch.setattr("tumblers.diagnosis.pair_search.is_enough", lambda *_: enough)
+    monkeypatch.setattr("tumblers.diagnosis.pair_search.is_wanting", lambda *_: True)
+    assert search.pairing.found(singles, strong=True)
+    # What is exchanged later is another contender of the same name.
+    assert [any(first is single for first in tried) for single in singles] == [True, True, *(3 * [not enough]), False]
+
+
+def test_of_many_parameters_what_was_not_searched_is_searched_far_away_beside_the_best(
     search: Search, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     fitter = search.fitter
     size, strength, rough, camera = search.possible
     assert [h.free > MANY for h in search.possible] == [False, False, True, True]
-    first = idle(fitter, size, 900.0)
+    first = held(fitter, size, 900.0)
     best, second, third = (
-        idle(fitter, h, cost) for h, cost in ((size + rough, 500.0), (size + strength, 600.0), (size + camera, 700.0))
+        held(fitter, h, cost) for h, cost in ((size + rough, 500.0), (size + strength, 600.0), (size + camera, 700.0))
     )
     sought: list[Contender] = []
 
@@ -57,18 +109,19 @@ def test_of_many_parameters_what_is_not_among_the_best_pairs_is_searched_far_awa
         return replace(contender, cost=100.0)
 
     monkeypatch.setattr("tumblers.diagnosis.pair_search.from_beginnings", far)
-    pairing = search.pairing
-    # What is known is searched from where it is, what nobody fitted from the best effect with neutral beside it.
-    made = pairing._with_many([best, second, third], first)
-    assert sought == [third]
-    assert [pair.names for pair in made] == [third.names, best.names, second.names]
+    # What is known is searched from where it is, wherever it stands.
+    for found in ([best, second, third], [best, third, second]):
+        sought.clear()
+        made = search.pairing._with_many(found, first, [rough, camera], {frozenset(best.names)})
+        assert sought == [third]
+        assert [pair.names for pair in made] == [third.names, best.names, second.names]
+    # What nobody fitted is searched from the best effect, with neutral beside it.
     sought.clear()
-    made = pairing._with_many([best, second], first)
-    assert [pair.names for pair in sought] == [third.names]
+    made = search.pairing._with_many([best, second], first, [rough, camera], {frozenset(best.names)})
+    (new,) = sought
+    assert new.names == third.names
+    np.testing.assert_allclose(new.point, [*first.point, *np.zeros(len(camera.neutral))], atol=1e-6)
     assert [pair.names for pair in made] == [third.names, best.names, second.names]
-    sought.clear()
-    assert pairing._with_many([best, third, second], first) == [best, second, third]
-    assert not sought
 
 
 @pytest.mark.parametrize("strong", [True, False])
@@ -77,21 +130,71 @@ def test_a_pair_that_only_the_exchange_brings_is_searched_over_its_range_too(
 ) -> None:
     fitter = search.fitter
     size, strength, rough, camera = search.possible
-    singles = [idle(fitter, size, 1e6), idle(fitter, strength, 2e6)]
-    known = [idle(fitter, h, cost) for h, cost in ((size + strength, 500.0), (size + rough, 600.0))]
-    new = idle(fitter, strength + camera, 400.0)
-    sought: list[list[Contender]] = []
+    singles = [held(fitter, size, 1e6), held(fitter, strength, 2e6)]
+    # The second of these has many parameters: it was searched from where it is alone.
+    known = [held(fitter, h, cost) for h, cost in ((size + strength, 500.0), (size + rough, 600.0))]
+    new = held(fitter, strength + camera, 400.0)
+    exchanged: list[Contender] = []
+    refined: list[Contender] = []
+    sought: list[Contender] = []
 
-    def refined(_fitter: Fitter, contenders: Sequence[Contender], count: int, *_: object) -> list[Contender]:
-        sought.append(list(contenders[:count]))
+    def refining(_fitter: Fitter, contenders: Sequence[Contender], count: int, *_: object) -> list[Contender]:
+        refined.extend(contenders[:count])
         return list(contenders)
 
+    def far(_fitter: Fitter, contender: Contender, *_: object) -> Contender:
+        sought.append(contender)
+        return contender
+
     monkeypatch.setattr("tumblers.diagnosis.pair_search.settled", as_they_are)
-    monkeypatch.setattr("tumblers.diagnosis.pair_search.refined", refined)
+    monkeypatch.setattr("tumblers.diagnosis.pair_search.refined", refining)
+    monkeypatch.setattr("tumblers.diagnosis.pair_search.from_beginnings", far)
     monkeypatch.setattr("tumblers.diagnosis.pair_search.is_wanting", lambda *_: False)
-    monkeypatch.setattr("tumblers.diagnosis.pairs.Pairs.add", lambda *_: None)
-    monkeypatch.setattr("tumblers.diagnosis.pairs.Pairs.join", lambda *_: None)
-    monkeypatch.setattr(PairSearch, "exchanged", lambda *_: [new, *known])
-    made = search.pairing.found(singles, strong=strong, known=known)
-    assert [pair.names for pair in made] == [pair.names for pair in (new, *known)]
-    assert sought == ([known, [new]] if strong else [])
+    monkeypatch.setattr(Pairs, "add", lambda *_: None)
+    monkeypatch.setattr(Pairs, "join", lambda *_: None)
+    monkeypatch.setattr(PairSearch, "exchanged", lambda *_: exchanged)
+    for exchanged, expected in (
+        ([new, *known], [new]),
+        ([known[0], new, known[1]], [new]),
+        (known, [known[1]]),
+        ([new, known[1], known[0]], [new, known[1]]),
+    ):
+        refined.clear()
+        sought.clear()
+        made = search.pairing.found(singles, strong=strong, known=known)
+        assert {pair.names for pair in made} == {pair.names for pair in exchanged}
+        assert refined == (known if strong else [])
+        assert sought == (expected if strong else [])
+
+
+@pytest.mark.parametrize("strong", [True, False])
+@pytest.mark.parametrize("wanting", [True, False])
+@pytest.mark.parametrize("enough", [True, False])
+def test_where_a_cause_is_strong_the_best_are_joined_and_where_pairs_leave_a_gap_many_parameters_are_searched(
+    strong: bool, wanting: bool, enough: bool, search: Search, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fitter = search.fitter
+    size, strength, *many = search.possible
+    singles = [held(fitter, size, 1e6), held(fitter, strength, 2e6)]
+    known = [held(fitter, size + strength, 500.0)]
+    joined: list[Sequence[Contender]] = []
+    searched: list[Sequence[Hypothesis]] = []
+
+    def with_many(
+        _: PairSearch, found: Sequence[Contender], first: Contender, those: Sequence[Hypothesis], __: object
+    ) -> list[Contender]:
+        assert first is singles[0]
+        searched.append(those)
+        return list(found)
+
+    monkeypatch.setattr("tumblers.diagnosis.pair_search.settled", as_they_are)
+    monkeypatch.setattr("tumblers.diagnosis.pair_search.refined", as_they_are)
+    monkeypatch.setattr("tumblers.diagnosis.pair_search.is_wanting", lambda *_: wanting)
+    monkeypatch.setattr("tumblers.diagnosis.pair_search.is_enough", lambda *_: enough)
+    monkeypatch.setattr(Pairs, "add", lambda *_: None)
+    monkeypatch.setattr(Pairs, "join", lambda _, those: joined.append(those))
+    monkeypatch.setattr(PairSearch, "exchanged", lambda _, found, __: list(found))
+    monkeypatch.setattr(PairSearch, "_with_many", with_many)
+    search.pairing.found(singles, strong=strong, known=known)
+    assert joined == ([singles] if strong else [])
+    assert searched == ([many] if strong and wanting and not enough else [])

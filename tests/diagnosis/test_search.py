@@ -1,27 +1,23 @@
-"""How a search goes on: what it keeps, refines and pairs."""
+"""How a search goes on in the right steps, and where the nominal model is right."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
-from tumblers.diagnosis.beginnings import MANY
 from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.contender import Contender, of_fit, of_nominal
+from tumblers.diagnosis.contender import Contender, of_nominal
 from tumblers.diagnosis.fitter import Fitter
 from tumblers.diagnosis.own_noise import NEAR, OWN, beside
-from tumblers.diagnosis.pair_search import PairSearch, kept
+from tumblers.diagnosis.pair_search import PairSearch
 from tumblers.diagnosis.pairs import Pairs
-from tumblers.diagnosis.refined import refined
 from tumblers.diagnosis.search import Search
 from tumblers.diagnosis.simulator import LONGEST_STEP_S, Simulator
 from tumblers.effects.catalogue import CATALOGUE
 from tumblers.effects.magnetization_strength import MagnetizationStrength
 from tumblers.effects.size_error import SizeError
-from tumblers.effects.surface_roughness import SurfaceRoughness
 
 from .lab import PLANS, coarse_lab, measure, plan, quiet
 
@@ -105,71 +101,3 @@ def test_where_the_nominal_model_is_right_too_what_leads_is_held_against_its_own
     held = [contender for contender in others if contender.settled]
     assert len(held) >= OWN
     assert held[0].total == pytest.approx(beside(fitter, held[0], held[0]).total, rel=1e-9)
-
-
-def test_what_was_settled_does_not_give_way_to_what_was_not() -> None:
-    fitter = coarse_lab(SizeError(length_factor=1.1))
-    fitter.take_likeliest_noise(())
-    made = of_nominal(fitter)
-    old, new, better = replace(made, settled=True), replace(made, cost=-9.0), replace(made, cost=-9.0, settled=True)
-    for contender, expected in ((new, old), (better, better)):
-        assert kept([contender], [old]) == [expected]
-    assert kept([new], [replace(old, settled=False)]) == [new]
-
-
-@pytest.mark.parametrize("enough", [False, True])
-def test_more_firsts_are_tried_where_every_pair_leaves_a_gap(enough: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    truth = (SizeError(length_factor=1.2), MagnetizationStrength(factor=0.7))
-    dataset = measure(plan(PLANS[:1]), truth)
-    search = Search(Fitter(Comparison(dataset, Simulator(dataset))), [CATALOGUE[name] for name in MANY_KINDS], quiet, 0)
-    search.fitter.take_likeliest_noise(())
-    nominal = of_nominal(search.fitter)
-    # All as near to the best as a first has to be.
-    singles = [replace(single, cost=nominal.cost) for single in search._singles(nominal)]
-    tried: list[Contender] = []
-    add = Pairs.add
-
-    def spied(pairs: Pairs, first: Contender, others: Sequence[Contender]) -> None:
-        tried.append(first)
-        # One pair is enough to go on with.
-        if len(tried) == 1:
-            add(pairs, first, others)
-
-    monkeypatch.setattr(Pairs, "add", spied)
-    monkeypatch.setattr("tumblers.diagnosis.pair_search.is_enough", lambda *_: enough)
-    monkeypatch.setattr("tumblers.diagnosis.pair_search.is_wanting", lambda *_: True)
-    assert search.pairing.found(singles, strong=True)
-    # What is exchanged later is another contender of the same name.
-    assert [any(first is single for first in tried) for single in singles] == [True, True, *(3 * [not enough]), False]
-
-
-def test_of_many_parameters_the_best_is_searched_over_its_range_and_another_pair_from_where_it_is(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    fitter = coarse_lab()
-    search = Search(fitter, [SizeError, SurfaceRoughness], quiet, 0)
-    size, rough = sorted(search.possible, key=lambda hypothesis: hypothesis.free)
-    assert size.free <= MANY < rough.free
-    few, many, pair = (
-        of_fit(fitter, fitter.fit(h, np.zeros(len(h.neutral)), evaluations=1)) for h in (size, rough, size + rough)
-    )
-    sought: list[tuple[str, Contender]] = []
-
-    def over_the_range(_fitter: Fitter, contender: Contender, *_: object) -> Contender:
-        sought.append(("range", contender))
-        return contender
-
-    def from_where_it_is(_fitter: Fitter, contender: Contender) -> Contender:
-        sought.append(("here", contender))
-        return contender
-
-    monkeypatch.setattr("tumblers.diagnosis.refined.from_beginnings", over_the_range)
-    monkeypatch.setattr("tumblers.diagnosis.refined.from_its_own_beginning", from_where_it_is)
-    for contenders, expected in (
-        ([pair, few], [("range", pair), ("range", few)]),
-        ([few, pair], [("range", few), ("here", pair)]),
-        ([few, many, pair], [("range", few)]),
-    ):
-        sought.clear()
-        refined(fitter, contenders, 2, search.possible, 0, quiet)
-        assert sought == expected

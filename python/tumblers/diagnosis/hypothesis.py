@@ -140,6 +140,22 @@ class Hypothesis:
         same = [bool(np.all(self.values(beside) == here)) for beside in point + np.diag(signed)]
         return np.array(same) & (self.low < self.high) & (self.low <= point) & (point <= self.high)
 
+    def weakened(self, point: Floats, share: float) -> Floats:
+        """Return a point at which the effects are a share as strong, shape (p,).
+
+        What does nothing while the rest is neutral stays: a wavelength, an exponent.
+
+        Parameters
+        ----------
+        point
+            As u, shape (p,).
+        share
+            Of the way from neutral.
+        """
+        ends = np.diag(np.where(self.high > 0.0, self.high, self.low))
+        acts = [not all(effect.is_neutral() for effect in self.effects(end)) for end in ends]
+        return np.where(acts, share * point, point)
+
     @property
     def names(self) -> tuple[str, ...]:
         """The effects' names."""

@@ -1,13 +1,14 @@
 """`PairSearch`: the pairs of effects that may be at work, and what may stand in either one's place.
 
-A second effect is added to the best ones, and the best are joined two and two. Where that leaves a gap, more of them
-are firsts, and what no scan shows is searched far away: effects of many parameters beside the best one. At last either
-effect of the best pair is exchanged, for one may be the answer to another that is wrong.
+A second effect is added to the best ones, and where the cause is strong, the best are joined two and two. Where that
+leaves a gap, more of them are firsts, and what no scan shows is searched far away: effects of many parameters beside
+the best one. At last either effect of the best pair is exchanged, for one may be the answer to another that is wrong,
+and what that brings is searched over its range too.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,7 +23,7 @@ from .hypothesis import Hypothesis
 from .own_noise import settled
 from .pairs import Pairs, firsts
 from .predictive import is_right, is_wanting
-from .refined import refined
+from .refined import refined, to_refine
 
 __all__ = ["PairSearch", "is_enough", "kept"]
 
@@ -126,18 +127,18 @@ class PairSearch:
             self._add(pairs, firsts(singles[:_MORE_FIRSTS])[len(near) :], singles)
             made = self._settled(pairs.likeliest_first(), made)
         # However little the best leaves: against a sharper noise another may leave as little.
+        searched = {frozenset(made[k].names) for k in to_refine(made, _REFINED)} if strong else set()
         if strong:
-            made = self._settled(self._refined(made, _REFINED), made)
+            made = self._settled(refined(self.fitter, made, _REFINED, self.possible, self.seed, self.tell), made)
         if wanting and not self._is_enough(made):
-            made = self._settled(self._with_many(made, singles[0]), made)
-        if not (wanting or self.is_named(made[0], singles[0])):
-            return made
-        searched = {frozenset(pair.names) for pair in made[:_REFINED]}
-        made = self.exchanged(made, singles)
-        new = [pair for pair in made[:_REFINED] if frozenset(pair.names) not in searched]
-        if strong and new:
-            others = [pair for pair in made if pair not in new]
-            made = self._settled(self._refined([*new, *others], len(new)), made)
+            many = [h for h in self.possible if h.free > MANY and h.names != singles[0].names]
+            made = self._settled(self._with_many(made, singles[0], many, searched), made)
+            searched |= {frozenset(singles[0].names + h.names) for h in many}
+        if wanting or self.is_named(made[0], singles[0]):
+            made = self.exchanged(made, singles)
+            new = [pair for pair in made[:_REFINED] if frozenset(pair.names) not in searched]
+            if strong and new:
+                made = self._settled(self._far(made, new), made)
         return made
 
     def is_named(self, pair: Contender, single: Contender) -> bool:
@@ -175,25 +176,36 @@ class PairSearch:
                 break
         return made
 
-    def _with_many(self, found: Sequence[Contender], first: Contender) -> list[Contender]:
+    def _with_many(
+        self,
+        found: Sequence[Contender],
+        first: Contender,
+        many: Sequence[Hypothesis],
+        searched: Collection[frozenset[str]],
+    ) -> list[Contender]:
         """Search far away for effects of many parameters beside the best one: where such a one is strong, no scan does.
 
-        Where the best pairs have it already, it was searched there.
+        Which pairs were searched so already is said by their names.
         """
-        made = list(found)
+        made, those = list(found), []
         assert first.fit is not None
-        searched = [frozenset(pair.names) for pair in found[:_REFINED]]
-        for other in self.possible:
+        for other in many:
             names = frozenset(first.names + other.names)
-            if other.free <= MANY or len(names) == 1 or names in searched:
+            if names in searched:
                 continue
-            self.tell("many parameters beside the best", 0, 1)
             pair = next((pair for pair in found if names == frozenset(pair.names)), None)
             if pair is None:
                 start = np.concatenate([first.point, np.zeros(len(other.neutral))])
                 self.fitter.take_likeliest_noise(first.effects)
                 pair = of_fit(self.fitter, self.fitter.fit(first.fit.hypothesis + other, start, evaluations=1))
-            made = [one for one in made if one is not pair]
+            those.append(pair)
+        return self._far(made, those)
+
+    def _far(self, found: Sequence[Contender], those: Sequence[Contender]) -> list[Contender]:
+        """Search for some of the pairs over their whole range."""
+        made = [pair for pair in found if pair not in those]
+        for n, pair in enumerate(those):
+            self.tell("pairs over the whole range", n, len(those))
             made.append(from_beginnings(self.fitter, pair, self.possible, self.seed))
         return likeliest_first(made)
 
@@ -207,9 +219,6 @@ class PairSearch:
 
     def _settled(self, found: Sequence[Contender], before: Sequence[Contender]) -> list[Contender]:
         return kept(settled(self.fitter, found, self.tell), before)
-
-    def _refined(self, found: Sequence[Contender], count: int) -> list[Contender]:
-        return refined(self.fitter, found, count, self.possible, self.seed, self.tell)
 
     def _is_enough(self, contenders: Sequence[Contender]) -> bool:
         return is_enough(self.fitter.comparison, contenders)

@@ -79,7 +79,7 @@ class Search:
 
     @property
     def pairing(self) -> PairSearch:
-        """The search for pairs of what is possible."""
+        """The search for pairs of what is possible, which a look at the nominal model narrows."""
         return PairSearch(self.fitter, self.possible, self.hints, self.worth, self.tell, self.seed)
 
     def contenders(self) -> list[Contender]:
@@ -154,23 +154,23 @@ class Search:
         singles = settled(self.fitter, singles, self.tell, OWN, MOST_OWN)
         singles = all_shaken(self.fitter, singles, self.seed, self.tell)
         pairs: list[Contender] = []
-        known: set[tuple[str, ...]] = set()
+        searched: set[tuple[str, ...]] = set()
         worth = nominal.total - self.worth
         if is_wanting(self.comparison, singles[0].residual):
-            known = {singles[k].names for k in to_refine(singles, _REFINED)}
+            searched = {singles[k].names for k in to_refine(singles, _REFINED)}
             singles = settled(self.fitter, self._refined(singles), self.tell)
         if singles[0].total <= worth:
             pairs = self.pairing.found(singles, strong=True)
         # Where two effects leave no gap, what is far away is not looked for.
         if not is_enough(self.comparison, [*singles, *pairs]):
-            far = settled(self.fitter, self._far(singles, known), self.tell)
+            far = settled(self.fitter, self._far(singles, searched), self.tell)
             near, singles = singles, far
             more = CLEAR if near[0].names != far[0].names else max(CLEAR, _FARTHER * far[0].cost)
             untried = near[0].total > worth
             if far[0].total <= worth and (untried or near[0].total - far[0].total > more):
                 pairs = self.pairing.found(singles, strong=True, known=pairs)
         elif not (pairs and pairs[0].total < singles[0].total - self.worth):
-            singles = settled(self.fitter, self._elsewhere(singles, known), self.tell)
+            singles = settled(self.fitter, self._elsewhere(singles, searched), self.tell)
         made = self._with_shaken_pair(singles, pairs) if singles[0].total <= worth else [*singles, *pairs]
         made = likeliest_first(made)
         return with_counterparts(self.fitter, made, self.possible, self.tell) if made[0].total <= worth else made
@@ -182,21 +182,21 @@ class Search:
         pairs = likeliest_first([shaken(self.fitter, pairs[0], self.seed, self.tell), *pairs[1:]])
         return likeliest_first([nested(self.fitter, singles[0], pairs[:1]), *singles[1:], *pairs])
 
-    def _far(self, singles: Sequence[Contender], known: Collection[tuple[str, ...]]) -> list[Contender]:
+    def _far(self, singles: Sequence[Contender], searched: Collection[tuple[str, ...]]) -> list[Contender]:
         """Search far away for those that no local fit can be trusted with, but for those that were searched so."""
         made = list(singles)
         self.tell("points over the whole range", _REFINED, _REFINED)
         self.fitter.take_likeliest_noise(made[0].effects)
-        few = [k for k, c in enumerate(made) if c.free <= MANY and c.names not in known]
+        few = [k for k, c in enumerate(made) if c.free <= MANY and c.names not in searched]
         promises = {k: promise(self.fitter, made[k], self.seed) for k in few}
         promising = sorted(few, key=lambda k: -promises[k])[:_PROMISING]
         for k, contender in enumerate(made):
-            many = contender.free > MANY and contender.names not in known
+            many = contender.free > MANY and contender.names not in searched
             if many or (k in promising and promises[k] > CLEAR):
                 made[k] = from_beginnings(self.fitter, contender, self.possible, self.seed)
         return likeliest_first(made)
 
-    def _elsewhere(self, singles: Sequence[Contender], known: Collection[tuple[str, ...]]) -> list[Contender]:
+    def _elsewhere(self, singles: Sequence[Contender], searched: Collection[tuple[str, ...]]) -> list[Contender]:
         """Search far away for effects of one parameter too where another leaves no gap: one of them may be the cause.
 
         Those are fitted that follow the beginnings of the trials about as well.
@@ -206,7 +206,7 @@ class Search:
         self.fitter.take_likeliest_noise(best.effects)
         goal = beginning(self.fitter, best)
         for k, contender in enumerate(made):
-            if k == 0 or contender.free > 1 or contender.names in known:
+            if k == 0 or contender.free > 1 or contender.names in searched:
                 continue
             wanted = (1.0 - AS_GOOD) * (beginning(self.fitter, contender) - goal)
             if promise(self.fitter, contender, self.seed) > max(CLEAR, wanted):

@@ -9,7 +9,6 @@ from math import pi
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
-from scipy.stats import qmc
 
 from ..check import Vector
 from ..errors import InputError, show
@@ -23,8 +22,9 @@ if TYPE_CHECKING:
 __all__ = ["SurfaceRoughness"]
 
 # Where a relief is shallow, a fit finds its way from one to the next; where it is not, from one of the closer ones; and
-# where it is steep enough to hold the robot or let it slide, from a steep one alone: so many of them, with slopes (root
-# mean square) between these, all three waves of which lean alike.
+# where it is steep enough to hold the robot or let it slide, from a steep one alone: from so many reliefs of all three
+# waves with slopes (root mean square) between these, amplitudes beyond their ranges held at the end. Their number was
+# chosen on four datasets with a known truth.
 _WAVELENGTHS_M = (0.7e-3, 1.0e-3, 1.5e-3, 2.2e-3, 3.3e-3, 4.8e-3, 7.0e-3)
 _CLOSE_RATIO, _CLOSE_COUNT = 1.217, 13
 _RELIEFS, _SLOPES = 256, (0.01, 0.25)
@@ -129,15 +129,20 @@ class SurfaceRoughness(Effect):
 
 @cache
 def _reliefs(ranges: tuple[tuple[float, float], ...]) -> tuple[tuple[float, ...], ...]:
-    """Return reliefs evenly over directions, and over the logarithms of their wavelengths and slopes (Sobol 1967)."""
+    """Return reliefs over the logarithms of wavelength and slope, and over the waves' shares of it (Sobol 1967)."""
+    # What only a diagnosis needs is not loaded with every simulation.
+    from scipy.stats import qmc
+
     (shortest, longest), (gentle, steep) = ranges[0], _SLOPES
+    # The same for every diagnosis, whatever its seed is: they are starts, as the wavelengths are.
     drawn = qmc.Sobol(1 + len(ranges), rng=np.random.default_rng(0)).random(_RELIEFS)
     wavelength = shortest * (longest / shortest) ** drawn[:, 0]
     slope = gentle * (steep / gentle) ** drawn[:, 1]
-    ways = 2.0 * drawn[:, 2:] - 1.0
-    ways /= np.sqrt(0.5 * np.sum(ways**2, axis=1, keepdims=True))
+    # The mean square of the slope is half of the sum of the waves' squares.
+    shares = 2.0 * drawn[:, 2:] - 1.0
+    shares /= np.sqrt(0.5 * np.sum(shares**2, axis=1, keepdims=True))
     number = np.tile(np.arange(1, 4), 2)
-    amplitudes = ways * (slope * wavelength / (2.0 * pi))[:, None] / number
+    amplitudes = shares * (slope * wavelength / (2.0 * pi))[:, None] / number
     low, high = np.transpose(ranges[1:])
     points = np.column_stack([wavelength, np.clip(amplitudes, low, high)])
     return tuple(tuple(point) for point in points.tolist())
