@@ -140,6 +140,18 @@ class Hypothesis:
         same = [bool(np.all(self.values(beside) == here)) for beside in point + np.diag(signed)]
         return np.array(same) & (self.low < self.high) & (self.low <= point) & (point <= self.high)
 
+    def at_work(self, acting: Collection[int]) -> list[bool]:
+        """Return which effects change something with some coordinates at an end of their range, the others neutral.
+
+        Parameters
+        ----------
+        acting
+            The coordinates.
+        """
+        ends = np.where(self.high > 0.0, self.high, self.low)
+        point = np.where(np.isin(np.arange(len(ends)), list(acting)), ends, 0.0)
+        return [not effect.is_neutral() for effect in self.effects(point)]
+
     def weakened(self, point: Floats, share: float) -> Floats:
         """Return a point at which the effects are a share as strong, shape (p,).
 
@@ -152,8 +164,7 @@ class Hypothesis:
         share
             Of the way from neutral.
         """
-        ends = np.diag(np.where(self.high > 0.0, self.high, self.low))
-        acts = [not all(effect.is_neutral() for effect in self.effects(end)) for end in ends]
+        acts = [any(self.at_work([j])) for j in range(len(point))]
         return np.where(acts, share * point, point)
 
     @property

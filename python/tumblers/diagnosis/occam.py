@@ -87,7 +87,7 @@ def neutral_sets(hypothesis: Hypothesis) -> list[tuple[int, ...]]:
         last = first + len(kind.parameters)
         free = [j for j in range(first, last) if hypothesis.high[j] > hypothesis.low[j]]
         places = [j for j in free if not kind.parameters[j - first].always]
-        some = [held for held in _subsets(places) if held and _acts(hypothesis, n, [j for j in free if j not in held])]
+        some = [held for held in _subsets(places) if held and hypothesis.at_work([j for j in free if j not in held])[n]]
         by_effect.append([(), *some])
         first = last
     return [tuple(chain.from_iterable(sets)) for sets in product(*by_effect)]
@@ -96,13 +96,6 @@ def neutral_sets(hypothesis: Hypothesis) -> list[tuple[int, ...]]:
 def _subsets(places: Sequence[int]) -> Iterator[tuple[int, ...]]:
     most = len(places) if len(places) <= _MOST else 0
     return chain.from_iterable(combinations(places, count) for count in range(most + 1))
-
-
-def _acts(hypothesis: Hypothesis, place: int, acting: Sequence[int]) -> bool:
-    """Return whether an effect changes something with some coordinates at an end of their range, the others neutral."""
-    ends = np.where(hypothesis.high > 0.0, hypothesis.high, hypothesis.low)
-    point = np.where(np.isin(np.arange(len(ends)), acting), ends, 0.0)
-    return not hypothesis.effects(point)[place].is_neutral()
 
 
 def _posterior(fit: Fit, dispersion: float) -> tuple[Floats, Floats, Floats]:
