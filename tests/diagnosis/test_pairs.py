@@ -19,6 +19,7 @@ from tumblers.diagnosis.simulator import Simulator
 from tumblers.diagnosis.thresholds import CLEAR
 from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.effects.size_error import SizeError
+from tumblers.effects.surface_roughness import SurfaceRoughness
 
 from .lab import LYING, coarse_lab, measure, plan
 
@@ -81,13 +82,14 @@ def test_an_effect_alone_is_fitted_as_far_as_in_a_pair() -> None:
 def test_two_are_joined_from_all_and_from_halves_of_what_either_is_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     fitter = coarse_lab(SizeError(length_factor=1.1))
     fitter.take_likeliest_noise(())
-    size, friction = (
+    size, rough = (
         Hypothesis.of(kind, [fitter.comparison.simulator.nominal(i) for i in fitter.trials])
-        for kind in (SizeError, FrictionCoefficient)
+        for kind in (SizeError, SurfaceRoughness)
     )
+    relief = [0.3, 0.0, 0.0, 0.0, 0.04, 0.0, -0.02]
     singles = [
         of_fit(fitter, fitter.fit(h, point, evaluations=1))
-        for h, point in ((size, np.array([0.4, 0.0])), (friction, np.array([-0.2])))
+        for h, point in ((size, np.array([0.4, 0.0])), (rough, np.array(relief)))
     ]
     tried: list[list[float]] = []
     started: list[list[float]] = []
@@ -104,12 +106,14 @@ def test_two_are_joined_from_all_and_from_halves_of_what_either_is_alone(monkeyp
 
     monkeypatch.setattr(Fitter, "residuals", noted)
     monkeypatch.setattr(Fitter, "fit", begun)
-    pairs = Pairs(fitter, [size, friction], {})
+    pairs = Pairs(fitter, [size, rough], {})
     pairs.join(singles)
-    assert tried == [[0.4, 0.0, -0.2], [0.4, 0.0, -0.1], [0.2, 0.0, -0.2], [0.2, 0.0, -0.1]]
+    # Half of a relief has the same wavelength.
+    half = [0.3, 0.0, 0.0, 0.0, 0.02, 0.0, -0.01]
+    assert tried == [[0.4, 0.0, *relief], [0.4, 0.0, *half], [0.2, 0.0, *relief], [0.2, 0.0, *half]]
     # The best of them is fitted on.
     (pair,) = pairs.likeliest_first()
-    joined, whole = size + friction, fitter.trials
+    joined, whole = size + rough, fitter.trials
     costs = [fitter.cost(fitter.residuals(joined, [np.array(p)])[0], np.array(p), whole) for p in tried]
     assert started == [tried[int(np.argmin(costs))]]
     assert pair.cost <= min(costs)

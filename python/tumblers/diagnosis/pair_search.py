@@ -126,9 +126,10 @@ class PairSearch:
             pairs = self._pairs(made)
             self._add(pairs, firsts(singles[:_MORE_FIRSTS])[len(near) :], singles)
             made = self._settled(pairs.likeliest_first(), made)
+        searched: set[frozenset[str]] = set()
         # However little the best leaves: against a sharper noise another may leave as little.
-        searched = {frozenset(made[k].names) for k in to_refine(made, _REFINED)} if strong else set()
         if strong:
+            searched |= {frozenset(made[k].names) for k in to_refine(made, _REFINED)}
             made = self._settled(refined(self.fitter, made, _REFINED, self.possible, self.seed, self.tell), made)
         if wanting and not self._is_enough(made):
             many = [h for h in self.possible if h.free > MANY and h.names != singles[0].names]
@@ -185,9 +186,9 @@ class PairSearch:
     ) -> list[Contender]:
         """Search far away for effects of many parameters beside the best one: where such a one is strong, no scan does.
 
-        Which pairs were searched so already is said by their names.
+        Pairs whose names are among those that were searched so already stay as they are.
         """
-        made, those = list(found), []
+        those = []
         assert first.fit is not None
         for other in many:
             names = frozenset(first.names + other.names)
@@ -199,7 +200,7 @@ class PairSearch:
                 self.fitter.take_likeliest_noise(first.effects)
                 pair = of_fit(self.fitter, self.fitter.fit(first.fit.hypothesis + other, start, evaluations=1))
             those.append(pair)
-        return self._far(made, those)
+        return self._far(found, those)
 
     def _far(self, found: Sequence[Contender], those: Sequence[Contender]) -> list[Contender]:
         """Search for some of the pairs over their whole range."""

@@ -31,8 +31,8 @@ AS_GOOD = 0.5
 # A first leaves no more than so much of the best one's objective beyond it.
 _NEAR_BEST = 0.5
 # Seconds that are fitted with each first; singles that are joined two and two, joints that are fitted, and shares of
-# what each is by itself: of two that do much the same either alone does what both do, and is about twice too much. How
-# many was chosen on datasets with a known truth, in which a pair had not been found.
+# what each is by itself: of two that do much the same either alone does what both do, and is about twice too much. With
+# as many a pair was found in a dataset with a known truth in which it had not been.
 _SECONDS, _JOINED, _JOINTS = 3, 8, 4
 _HALVES = ((1.0, 1.0), (1.0, 0.5), (0.5, 1.0), (0.5, 0.5))
 # Shares of the way to either end of a range that are tried of what may stand in another's place.
