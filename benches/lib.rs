@@ -51,6 +51,7 @@ fn trial(parts: TrialParts) -> Trial {
 fn cuboid_parts(frequency: f64) -> TrialParts {
     let substrate = Substrate {
         friction_coefficient: 0.3,
+        friction_drift: 0.0,
         friction_ellipsoid: [1.0, 1.0, 0.1],
         adhesion: 1.19,
         electrostatic_force: 6.54e-7,
@@ -76,6 +77,7 @@ pub fn cuboid_in_the_air(frequency: f64) -> Trial {
 pub fn pdms(shape: Shape, draft_deg: f64, theta1_deg: f64, theta2_deg: f64) -> Trial {
     let substrate = Substrate {
         friction_coefficient: 0.8,
+        friction_drift: 0.0,
         friction_ellipsoid: [1.0, 1.0, 0.1],
         adhesion: 340.115,
         electrostatic_force: 2.2022e-7,

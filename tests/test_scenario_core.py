@@ -70,6 +70,7 @@ BUILT: list[tuple[Callable[[], object], str, str]] = [
     (lambda: BODY.with_center_of_mass((NAN, 0, 0)), "robot.center_of_mass_m", "finite"),
     (lambda: _core.Field.rotating(1, 1, (1, 0, 0), (0, 1, 0), -1), "field.quadrature_ratio", "0 or more"),
     (lambda: _core.Field.rotating(1, 1, (1, 0, 0), (0, 1, 0), 1, NAN), "field.phase_error_deg", "finite"),
+    (trial(friction_drift_per_s=NAN), "substrate.friction_drift_per_s", "finite"),
     (trial(compliance_m_per_N=-1.0), "substrate.compliance_m_per_N", "0 or more"),
     (trial(side_incline_rad=NAN), "run.side_incline_deg", "finite"),
     (trial(relief_wavelength_m=0.0), "relief.wavelength_m", "greater than 0"),

@@ -152,6 +152,7 @@ SCENARIO = st.builds(
         electrostatic_force_N=st.floats(0, 1e-5),
         line_contact_width_m=st.floats(0, 1e-5),
         compliance_m_per_N=st.floats(0, 30),
+        friction_drift_per_s=st.floats(-3, 3),
     ),
     field=FIELD,
     run=st.builds(

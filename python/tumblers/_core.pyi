@@ -213,6 +213,7 @@ class Trial:
         sheet_conductance_S: float = 0.0,
         wrench_time_s: _Numbers = ...,
         wrench_N_N_m: _Rows = ...,
+        friction_drift_per_s: float = 0.0,
     ) -> Trial: ...
     @property
     def stability_bound_s(self) -> float:

@@ -31,6 +31,7 @@ _NAMES = {
     "magnetic moment": "robot.magnetization_A_per_m",
     "center_of_mass_m": "robot.center_of_mass_m",
     "friction_coefficient": "substrate.friction_coefficient",
+    "friction_drift_per_s": "substrate.friction_drift_per_s",
     "friction_ellipsoid": "substrate.friction_ellipsoid",
     "adhesion_N_per_m2": "substrate.adhesion_N_per_m2",
     "electrostatic_force_N": "substrate.electrostatic_force_N",

@@ -38,6 +38,7 @@ def native_trial(scenario: Scenario) -> _core.Trial:
             mass_kg=robot.total_mass_kg,
             magnetic_moment_A_m2=robot.magnetic_moment_A_m2,
             friction_coefficient=substrate.friction_coefficient,
+            friction_drift_per_s=substrate.friction_drift_per_s,
             friction_ellipsoid=substrate.friction_ellipsoid,
             adhesion_N_per_m2=substrate.adhesion_N_per_m2,
             electrostatic_force_N=substrate.electrostatic_force_N,

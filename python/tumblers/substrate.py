@@ -24,7 +24,7 @@ class Substrate:
     Attributes
     ----------
     friction_coefficient
-        μ of the paper.
+        μ of the paper; where it drifts, at the start.
     friction_ellipsoid
         e_t, e_o (no unit) and e_r (m). The default e_r of 0.1 m is that of the authors' released code.
     adhesion_N_per_m2
@@ -35,6 +35,8 @@ class Substrate:
         Width of the strip that counts as area where a line touches, m; 0 is the paper's model.
     compliance_m_per_N
         How far the plane yields per normal force, m/N; 0 is the paper's rigid plane.
+    friction_drift_per_s
+        k of μ(t) = μ max(0, 1 + k t), 1/s, with t from the start of the trial; 0 is the paper's constant friction.
 
     Raises
     ------
@@ -48,10 +50,13 @@ class Substrate:
     electrostatic_force_N: float = 0.0
     line_contact_width_m: float = 0.0
     compliance_m_per_N: float = 0.0
+    friction_drift_per_s: float = 0.0
 
     def __post_init__(self) -> None:
         for name in _NOT_NEGATIVE:
             object.__setattr__(self, name, number(f"substrate.{name}", getattr(self, name), least=0.0))
+        drift = number("substrate.friction_drift_per_s", self.friction_drift_per_s)
+        object.__setattr__(self, "friction_drift_per_s", drift)
         ellipsoid = vector("substrate.friction_ellipsoid", self.friction_ellipsoid)
         for i, axis in enumerate(ellipsoid):
             number(f"substrate.friction_ellipsoid[{i}]", axis, above=0.0)

@@ -83,6 +83,7 @@ def reference_trial(scenario: Scenario) -> reference.Trial:
         mass=robot.total_mass_kg,
         moment=np.array(robot.magnetic_moment_A_m2),
         mu=substrate.friction_coefficient,
+        friction_drift=substrate.friction_drift_per_s,
         ellipsoid=np.array(substrate.friction_ellipsoid),
         adhesion_coefficient=substrate.adhesion_N_per_m2,
         electrostatic_force=substrate.electrostatic_force_N,

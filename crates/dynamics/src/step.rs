@@ -142,7 +142,7 @@ impl<'a> Step<'a> {
             ),
             torque,
             ellipsoid: Vec3::from(trial.substrate().friction_ellipsoid),
-            friction: FrictionBound::Coulomb(trial.substrate().friction_coefficient),
+            friction: FrictionBound::Coulomb(trial.substrate().friction_at(t + 0.5 * h)),
             adhesion: adhesion.impulse,
             pulls_at_ecp: normal && !at_centroid,
             raises_bound: !normal,

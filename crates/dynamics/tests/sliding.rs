@@ -96,6 +96,24 @@ fn friction_stays_inside_the_one_ellipsoid_and_is_on_it_while_the_contact_slips(
     assert!(slipping > 1000, "only {slipping} steps slipped");
 }
 
+/// `v(t) = v₀ - μ g (t + k t²/2)`, which steps that take the friction in their middle follow exactly, as long as there is
+/// any: with `k = -1/s` none is left after a second, and the box slides on.
+#[test]
+fn friction_that_drifts_brakes_a_box_as_its_integral_says() {
+    for (drift, until) in [(0.8, 0.5f64), (-0.5, 0.9), (-1.0, 1.5)] {
+        let mut parts = sliding(1.0, 5e-4, 0.5, 0.5);
+        parts.substrate.friction_drift = drift;
+        parts.duration = until;
+        let trial = Trial::new(parts).unwrap();
+        let mut stepper = Stepper::new(&trial, SolverKind::Reduced);
+        run_checked(&mut stepper, &trial, |_, _| ());
+        let braked = if drift * until < -1.0 { 0.5 / -drift } else { until + 0.5 * drift * until * until };
+        let speed = SPEED - MU * 9.8 * braked;
+        let found = stepper.state().linear.norm();
+        assert!((found - speed).abs() < 1e-9 * SPEED, "{found} m/s after {until} s with {drift} per s, not {speed}");
+    }
+}
+
 /// Regularised friction creeps with a speed that follows the load; a step that is solved does not.
 #[test]
 fn nothing_creeps_below_the_friction_angle_in_a_hundred_thousand_steps() {

@@ -205,6 +205,7 @@ fn what_makes_no_sense_is_refused() {
     };
     let zero = (Vec3::zeros(), Vec3::zeros());
     assert!(refused(|p| p.substrate.compliance = -1.0).starts_with("compliance_m_per_N is -1"));
+    assert!(refused(|p| p.substrate.friction_drift = f64::NAN).starts_with("friction_drift_per_s"));
     assert!(refused(|p| p.side_incline = f64::NAN).starts_with("side_incline_deg"));
     assert!(refused(|p| p.surroundings.force.x = f64::INFINITY).starts_with("force_N"));
     assert!(refused(|p| p.surroundings.translational_drag = -1.0).starts_with("translational_drag_N_s_per_m"));

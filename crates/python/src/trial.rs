@@ -21,7 +21,7 @@ impl PyTrial {
         linear_velocity_m_per_s=[0.0; 3], angular_velocity_rad_per_s=[0.0; 3], side_incline_rad=0.0,
         compliance_m_per_N=0.0, relief_wavelength_m=2e-3, relief_cosine_m=vec![], relief_sine_m=vec![], force_N=[0.0; 3],
         torque_N_m=[0.0; 3], translational_drag_N_s_per_m=0.0, rotational_drag_N_m_s=0.0, sheet_conductance_S=0.0,
-        wrench_time_s=vec![], wrench_N_N_m=vec![]))]
+        wrench_time_s=vec![], wrench_N_N_m=vec![], friction_drift_per_s=0.0))]
     #[allow(clippy::too_many_arguments)] // one keyword for each number of a scenario
     fn new(
         body: &PyBody,
@@ -56,10 +56,12 @@ impl PyTrial {
         sheet_conductance_S: f64,
         wrench_time_s: Vec<f64>,
         wrench_N_N_m: Vec<[f64; 6]>,
+        friction_drift_per_s: f64,
     ) -> PyResult<Self> {
         let robot = Robot::new(body.0.clone(), mass_kg, magnetic_moment_A_m2.into()).map_err(refused)?;
         let substrate = Substrate {
             friction_coefficient,
+            friction_drift: friction_drift_per_s,
             friction_ellipsoid,
             adhesion: adhesion_N_per_m2,
             electrostatic_force: electrostatic_force_N,

@@ -84,6 +84,8 @@ class Trial:
         `h(y)`.
     surroundings : Surroundings
         What else acts.
+    friction_drift : float
+        `k` [1/s].
     """
 
     body: Body
@@ -106,6 +108,11 @@ class Trial:
     compliance: float = 0.0
     relief: Relief = attribute(default_factory=Relief)
     surroundings: Surroundings = attribute(default_factory=Surroundings)
+    friction_drift: float = 0.0
+
+    def friction_at(self, time: float) -> float:
+        """`μ(t) = μ max(0, 1 + k t)`."""
+        return self.mu * max(0.0, 1.0 + self.friction_drift * time)
 
     def resting_state(self) -> State:
         """At rest, body axes along the substrate's, the lowest point on the plane."""

@@ -90,7 +90,7 @@ class StepProblem:
         self, trial: Trial, state: State, time: float, adhesion_force: float = 0.0, patch_centroid: Array | None = None
     ) -> None:
         self.trial, self.state, self.time, self.body = trial, state, time, trial.body
-        self.h, self.mu, self.e = trial.step, trial.mu, trial.ellipsoid
+        self.h, self.mu, self.e = trial.step, trial.friction_at(time + 0.5 * trial.step), trial.ellipsoid
         self.p_a = trial.step * adhesion_force
         self.centroid = patch_centroid
         self.rotation = state.rotation

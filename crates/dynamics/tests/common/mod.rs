@@ -39,6 +39,7 @@ pub fn curved() -> Body {
 pub fn smooth(friction_coefficient: f64) -> Substrate {
     Substrate {
         friction_coefficient,
+        friction_drift: 0.0,
         friction_ellipsoid: [1.0, 1.0, 0.1],
         adhesion: 0.0,
         electrostatic_force: 0.0,

@@ -137,6 +137,7 @@ impl Draw<'_> {
         };
         Substrate {
             friction_coefficient: self.perhaps(0.1, 0.4),
+            friction_drift: self.random.one_of(&[-1.0, 1.0]) * self.perhaps(0.7, 0.3),
             friction_ellipsoid: ellipsoid,
             adhesion: pull,
             electrostatic_force: self.perhaps(0.5, weight),
