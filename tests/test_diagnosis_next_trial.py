@@ -239,7 +239,7 @@ def test_a_lab_s_own_slope_is_within_its_ranges(dataset: Dataset) -> None:
 
 
 def test_all_hypotheses_are_foretold_in_one_step(dataset: Dataset) -> None:
-    rigid = (("friction_coefficient",), ((get(FRICTION).from_vector([1.1]),),))
+    rigid = (("friction_coefficient",), ((get(FRICTION).from_vector([1.1, 0.0]),),))
     soft = (("contact_compliance",), ((ContactCompliance(),), (ContactCompliance(compliance_m_per_N=0.01),)))
     assert in_one_step(dataset, [rigid]).step_s == [LONGEST_STEP_S] * len(dataset.trials)
     both = in_one_step(dataset, [rigid, soft])
@@ -255,7 +255,7 @@ def test_what_no_trial_along_y_tells_apart_is_told_apart_across(dataset: Dataset
     data = replace(dataset, trials=(run, replace(run, id="faster", field=replace(DRIVE, frequency_Hz=3.0))))
     along_y = tuple(option for option in candidates(data, 40) if isinstance(option.field, RotatingField))
     factors = (0.28, 0.3, 0.32)
-    less = tuple((get(FRICTION).from_vector([factor]),) for factor in factors)
+    less = tuple((get(FRICTION).from_vector([factor, 0.0]),) for factor in factors)
     less_along_y = tuple((get("friction_anisotropy").from_vector([1.0, factor]),) for factor in factors)
     hypotheses = [((FRICTION,), less), (("friction_anisotropy",), less_along_y)]
     simulator = in_one_step(data, hypotheses, 2)

@@ -76,6 +76,7 @@ def test_misalignment_replaces_nominal_angles() -> None:
         ("draft_angle", {"draft_deg": 3.0}, "robot", "draft_deg", 3.0),
         ("center_of_mass_offset", {"offset_m": (1e-5, 2e-5, 3e-6)}, "robot", "center_of_mass_m", (1e-5, 2e-5, 3e-6)),
         ("friction_coefficient", {"factor": 0.5}, "substrate", "friction_coefficient", 0.15),
+        ("friction_coefficient", {"drift_per_s": 0.2}, "substrate", "friction_drift_per_s", 0.2),
         ("friction_anisotropy", {"e_t_factor": 2.0}, "substrate", "friction_ellipsoid", (2.0, 1.0, 0.1)),
         ("friction_anisotropy", {"e_o_factor": 2.0}, "substrate", "friction_ellipsoid", (1.0, 2.0, 0.1)),
         ("adhesion_coefficient", {"factor": 2.0}, "substrate", "adhesion_N_per_m2", 2.38),

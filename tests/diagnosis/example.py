@@ -254,8 +254,15 @@ def outcomes_only() -> Diagnosis:
     overlays = tuple(Overlay(t.id, nothing, {}, {}, {}, {"climbed_share": (1.0, 0.0, NAN)}) for t in data.trials)
     return made(
         dataset=data,
-        effects=(EffectEstimate("friction_coefficient", 0.5, {"factor": Interval(1.2, NAN, NAN, False)}, ("x",)),),
-        chosen=(CATALOGUE["friction_coefficient"].from_vector([1.2]),),
+        effects=(
+            EffectEstimate(
+                "friction_coefficient",
+                0.5,
+                {"factor": Interval(1.2, NAN, NAN, False), "drift_per_s": Interval(0.0, NAN, NAN, False)},
+                ("x",),
+            ),
+        ),
+        chosen=(CATALOGUE["friction_coefficient"].from_vector([1.2, 0.0]),),
         gap=Gap(NAN, 3.0, NAN, NAN, Interval(NAN, NAN, NAN), (), {"slope30": (3.0, NAN, NAN)}),
         heat_maps=(HeatMap("empty", "a", "b", ("r",), ("c",), np.array([[NAN]])),),
         missing_wrench=None,

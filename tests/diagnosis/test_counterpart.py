@@ -126,7 +126,7 @@ def test_a_search_asks_at_its_end_what_else_does_what_its_leader_does(monkeypatc
     assert max(tilt, gradient) < found[()] - 100.0
 
 
-def test_an_effect_of_one_parameter_is_looked_for_far_away_though_another_leaves_no_gap() -> None:
+def test_an_effect_of_few_parameters_is_looked_for_far_away_though_another_leaves_no_gap() -> None:
     off = StaticField(strength_T=0.0, direction=(0.0, 1.0, 0.0))
     truth = FrictionCoefficient(factor=0.5)
     dataset = measure(plan((*PLANS[:2], PLANS[3], ("lying", off, 35.0))), (truth,), seed=3)
@@ -136,7 +136,7 @@ def test_an_effect_of_one_parameter_is_looked_for_far_away_though_another_leaves
     best = _at(search, FrictionAnisotropy(e_t_factor=0.5, e_o_factor=0.5))
     hypothesis = next(h for h in search.possible if h.names == ("friction_coefficient",))
     search.fitter.take_likeliest_noise(())
-    idle = of_fit(search.fitter, search.fitter.fit(hypothesis, np.zeros(1), evaluations=1))
+    idle = of_fit(search.fitter, search.fitter.fit(hypothesis, np.zeros(2), evaluations=1))
     assert idle.effects[0].vector()[0] > 0.9
     made = search._elsewhere([best, idle], set())
     friction = next(contender for contender in made if contender.names == ("friction_coefficient",))

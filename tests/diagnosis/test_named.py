@@ -29,7 +29,7 @@ diagnosing = import_module("tumblers.diagnosis.diagnose")
 CONSIDERED = ("size_error", "friction_coefficient", "field_rolloff", "viscous_drag")
 TRUTHS: dict[str, Effect] = {
     "size_error": get("size_error").from_vector((1.06, 1.0)),
-    "friction_coefficient": get("friction_coefficient").from_vector((0.6,)),
+    "friction_coefficient": get("friction_coefficient").from_vector((0.6, 0.0)),
     "field_rolloff": get("field_rolloff").from_vector((0.03,)),
     "viscous_drag": get("viscous_drag").from_vector((0.02,)),
 }

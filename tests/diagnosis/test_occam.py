@@ -9,7 +9,7 @@ from scipy.special import logsumexp
 from tumblers.diagnosis.comparison import Residual
 from tumblers.diagnosis.fit import Fit
 from tumblers.diagnosis.hypothesis import PRIOR_SIGMA, Hypothesis
-from tumblers.diagnosis.occam import _ratios, log_occam, neutral_sets, unneeded
+from tumblers.diagnosis.occam import _shares, log_occam, neutral_sets, unneeded
 from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects.catalogue import CATALOGUE
 
@@ -28,11 +28,13 @@ def hypothesis_of(*names: str) -> Hypothesis:
 @pytest.mark.parametrize(
     ("names", "sets"),
     [
-        (("friction_coefficient",), {()}),
+        (("viscous_drag",), {()}),
+        # A drift is not there without what drifts.
+        (("friction_coefficient",), {(), (1,)}),
         (("substrate_tilt",), {(), (0,), (1,)}),
         # The direction of an error has no place of its own without its angle, nor a wavelength without amplitudes.
         (("magnetization_misalignment",), {()}),
-        (("friction_coefficient", "substrate_tilt"), {(), (1,), (2,)}),
+        (("viscous_drag", "substrate_tilt"), {(), (1,), (2,)}),
     ],
 )
 def test_an_effect_acts_whatever_is_neutral(names: tuple[str, ...], sets: set[tuple[int, ...]]) -> None:
@@ -58,11 +60,13 @@ def test_what_is_held_has_no_set() -> None:
 @pytest.mark.parametrize(
     ("names", "asked"),
     [
-        (("friction_coefficient",), ()),
+        (("viscous_drag",), ()),
+        (("viscous_drag",), (0,)),
         (("friction_coefficient",), (0,)),
+        (("friction_coefficient",), (0, 1)),
         (("stray_field_gradient",), (1,)),
         (("surface_roughness",), (0, 1, 2)),
-        (("friction_coefficient", "substrate_tilt"), (0, 2)),
+        (("friction_coefficient", "substrate_tilt"), (0, 3)),
     ],
 )
 @pytest.mark.parametrize("dispersion", [1.0, 8.0])
@@ -85,8 +89,11 @@ def test_it_is_the_mean_evidence_of_all_sets(names: tuple[str, ...], asked: tupl
     cost = float(np.sum((seen - slopes @ best) ** 2) + np.sum((best / PRIOR_SIGMA) ** 2))
     fit = Fit(hypothesis, best, NOTHING, cost, slopes, np.full(count, 0.01))
     sets = neutral_sets(hypothesis)
-    each = [evidence([j for j in range(count) if j not in held]) for held in sets]
-    expected = float(logsumexp(each)) - np.log(len(sets))
+    each = np.array([evidence([j for j in range(count) if j not in held]) for held in sets])
+    drifting = np.array(["friction_coefficient" in names and 1 not in held for held in sets])
+    parts = np.where(drifting, 0.2 / max(drifting.sum(), 1), (0.8 if drifting.any() else 1.0) / (~drifting).sum())
+    each += np.log(parts)
+    expected = float(logsumexp(each))
     assert -0.5 * cost / dispersion + log_occam(fit, dispersion) == pytest.approx(expected, rel=1e-9, abs=1e-9)
     likeliest = sets[int(np.argmax(each))]
     assert np.flatnonzero(unneeded(fit, dispersion)).tolist() == sorted(likeliest)
@@ -103,7 +110,7 @@ def test_an_exponent_that_rests_at_zero_is_neutral_and_costs_its_place_among_the
     point = np.array([0.0, 0.4, 0.0, 0.0])
     fit = Fit(hypothesis, point, NOTHING, 30.0, slopes, np.full(4, 0.01))
     assert unneeded(fit, 1.0)[3]
-    ratios = dict(_ratios(fit, 1.0))
+    ratios = dict(_shares(fit, 1.0))
     assert all((ratio == -np.inf) == (3 not in held) for held, ratio in ratios.items())
     count = len(neutral_sets(hypothesis))
     without = hypothesis.held(np.array([False, False, False, True]))

@@ -66,9 +66,9 @@ def test_an_effect_alone_is_fitted_as_far_as_in_a_pair() -> None:
         for kind in (SizeError, FrictionCoefficient)
     )
     there = (np.array(SizeError(length_factor=1.1).to_fit((1.1, 1.0))) - size.neutral) / size.scale
-    pair = settled_at(fitter, size + friction, np.concatenate([there, [0.0]]))
+    pair = settled_at(fitter, size + friction, np.concatenate([there, np.zeros(2)]))
     stopped = settled_at(fitter, size, 0.9 * there)
-    other = settled_at(fitter, friction, np.zeros(1))
+    other = settled_at(fitter, friction, np.zeros(2))
     assert pair.total < stopped.total - 2.0 * CLEAR
     found = nested(fitter, stopped, [pair])
     assert found.settled

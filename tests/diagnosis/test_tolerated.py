@@ -16,6 +16,7 @@ from tumblers.diagnosis.simulator import Simulator
 from tumblers.diagnosis.tolerated import is_tolerated
 from tumblers.effects.base import Effect
 from tumblers.effects.electrostatic_force import ElectrostaticForce
+from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.effects.magnetization_strength import MagnetizationStrength
 from tumblers.effects.size_error import SizeError
 from tumblers.effects.substrate_tilt import SubstrateTilt
@@ -24,6 +25,8 @@ from .lab import coarse_lab, measure, plan
 
 # Of moment, field and weight together 0.866 %, of which three.
 MOMENT = 0.02598
+# Of friction 0.5 %, of which three.
+FRICTION = 0.015
 # A hundredth of the attraction by paper, three times.
 FORCE_N = 0.03 * plan().substrate.electrostatic_force_N
 
@@ -38,6 +41,8 @@ FORCE_N = 0.03 * plan().substrate.electrostatic_force_N
         ((ElectrostaticForce(added_force_N=1.01 * FORCE_N),), False),
         ((SizeError(length_factor=1.002, height_factor=1.002),), True),
         ((SizeError(length_factor=1.002, height_factor=1.004),), False),
+        ((FrictionCoefficient(factor=1.0 + 0.99 * FRICTION),), True),
+        ((FrictionCoefficient(factor=1.0 + 0.99 * FRICTION, drift_per_s=1e-3),), False),
         ((SubstrateTilt(slope_x_deg=1e-3),), False),
         ((SubstrateTilt(slope_x_deg=1e-3), MagnetizationStrength(factor=1.001)), False),
     ],
@@ -75,3 +80,18 @@ def test_what_may_be_within_a_tolerance_is_the_nominal_model(
         assert second.probability == 0.0
     else:
         assert (first, second.probability) == (effect, 0.1)
+
+
+@pytest.mark.parametrize(("deviation", "tolerated"), [(0.02, True), (2e-3, False)])
+def test_a_drift_that_the_data_allow_to_be_none_is_tolerated(deviation: float, tolerated: bool) -> None:
+    dataset = measure(plan(), (), seed=3)
+    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
+    hypothesis = Hypothesis.of(FrictionCoefficient, [fitter.comparison.simulator.nominal(i) for i in fitter.trials])
+    point = (np.array([1.0, 0.01]) - hypothesis.neutral) / hypothesis.scale
+    fit = fitter.fit(hypothesis, point, evaluations=1)
+    jacobian = np.diag(hypothesis.scale / (FRICTION, deviation))
+    effect = replace(of_fit(fitter, replace(fit, point=point, jacobian=jacobian)), log_evidence=5.0, probability=0.9)
+    nominal = replace(of_nominal(fitter), probability=0.1)
+    first, second = _with_tolerated(fitter, [effect, nominal], 1.0)
+    assert (first.names == ()) == tolerated
+    assert (second.probability == 0.0) == tolerated

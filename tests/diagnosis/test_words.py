@@ -131,6 +131,33 @@ def test_every_effect_reads_naturally(name: str) -> None:
     assert "nan" not in headline(made(effects=(EffectEstimate(name, NAN, unknown, ()),)))
 
 
+@pytest.mark.parametrize(
+    ("factor", "drift", "cause", "amount"),
+    [
+        ((1.2, 1.1, 1.3), (0.1, -0.1, 0.3), "there is more friction than assumed", "0.36 instead of 0.3)"),
+        (
+            (1.0, 0.9, 1.1),
+            (0.3, 0.2, 0.4),
+            "friction grows in the course of a trial",
+            "drifts by 0.30 ± 0.10 1/s of it,",
+        ),
+        (
+            (0.8, 0.7, 0.9),
+            (-0.3, -0.4, -0.2),
+            "there is less friction than assumed, and it falls in the course of a trial",
+            "at the start of each trial, which drifts by -0.30 ± 0.10 1/s of it,",
+        ),
+    ],
+)
+def test_a_drift_of_friction_is_told_where_it_is_off_zero(
+    factor: tuple[float, float, float], drift: tuple[float, float, float], cause: str, amount: str
+) -> None:
+    numbers = {"factor": Interval(*factor), "drift_per_s": Interval(*drift)}
+    phrase = phrase_of(EffectEstimate("friction_coefficient", 0.9, numbers, ()), lab())
+    assert phrase.cause == cause
+    assert phrase.amount.endswith(amount)
+
+
 def test_an_effect_of_the_users_own_falls_back_to_its_docstring(tmp_path: Path, monkeypatch: Any) -> None:
     class OwnEffect:
         """Something <odd> drags on the coils.

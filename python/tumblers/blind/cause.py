@@ -9,6 +9,7 @@ import numpy as np
 
 from ..effects.base import Effect
 from ..effects.catalogue import CATALOGUE
+from ..effects.parameter import FORM_SHARE
 from ..robot import Robot
 from ..scenario import Scenario
 from .forms import FORMS, SHAPES, law_of, scaled
@@ -123,7 +124,9 @@ def _draw(kind: type[Effect], scenarios: list[Scenario], rng: np.random.Generato
     # Where an effect cannot be at work its range is a point: take the widest.
     ranges = max((kind.ranges(s) for s in scenarios), key=lambda r: sum(high - low for low, high in r))
     free = [i for i, p in enumerate(kind.parameters) if p.key not in SHAPES]
-    acting = [i for i in free if rng.random() < 0.5] or [free[int(rng.integers(len(free)))]]
+    strong = [i for i in free if not kind.parameters[i].form]
+    acting = [i for i in strong if rng.random() < 0.5] or [strong[int(rng.integers(len(strong)))]]
+    acting += [i for i in free if i not in strong and rng.random() < FORM_SHARE]
     values = [p.neutral for p in kind.parameters]
     for i, (parameter, (low, high)) in enumerate(zip(kind.parameters, ranges, strict=True)):
         if parameter.key == "theta2_deg":

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import replace
-from math import atan, cbrt, degrees, hypot, inf, pi, radians, sin, sqrt
+from math import atan, cbrt, degrees, exp, hypot, inf, pi, radians, sin, sqrt
 from typing import Any
 
 import numpy as np
@@ -83,16 +83,17 @@ class GradientOverWorkspace(_Scaled):
         return 1.0 + self.slope * _share(float(state["position_m"][1]))
 
 
-class FrictionDrift(_Scaled):
-    """The friction drifts with the time since the field was switched on."""
+class FrictionRunsIn(_Scaled):
+    """The friction runs in with the time since the field was switched on: it is off by more at first, or by less."""
 
     def __init__(self, effect: Effect, rng: np.random.Generator) -> None:
         super().__init__(effect)
-        self.first = float(rng.uniform(0.5, 0.8))
+        self.first = float(rng.choice([-1.0, 1.0]) * rng.uniform(0.5, 0.9))
+        self.time_s = float(rng.uniform(0.15, 0.5) * _TRACK_S)
 
     def scale(self, time_s: float, state: State) -> float:  # noqa: ARG002
-        """Return less at the start than at the end, 1 in the middle of a track."""
-        return self.first + 2.0 * (1.0 - self.first) * min(time_s / _TRACK_S, 1.5)
+        """Return 1 once it has run in."""
+        return 1.0 + self.first * exp(-time_s / self.time_s)
 
 
 class AdhesionPlaces(_Scaled):
@@ -295,7 +296,7 @@ class BarrelCamera(EffectLaw):
 
 FORMS: dict[str, tuple[str, Callable[[Effect, np.random.Generator], Law]]] = {
     "magnetization_strength": ("partly_soft", SoftMagnet),
-    "friction_coefficient": ("drifts_with_time", FrictionDrift),
+    "friction_coefficient": ("runs_in", FrictionRunsIn),
     "adhesion_coefficient": ("varies_with_place", AdhesionPlaces),
     "stray_field_gradient": ("varies_over_workspace", GradientOverWorkspace),
     "field_rolloff": ("second_order", SecondOrderRolloff),

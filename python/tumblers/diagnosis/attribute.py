@@ -211,7 +211,9 @@ def _may_be_tolerated(fitter: Fitter, fit: Fit, scenarios: Sequence[Scenario], d
         ends += zip(*(kind.to_fit(values) for values in zip(*own, strict=True)), strict=True)
     low, high = ((np.array(end) - hypothesis.neutral) / hypothesis.scale for end in zip(*ends, strict=True))
     root = np.linalg.cholesky(fit.information(dispersion)).T
-    nearest = lsq_linear(root, root @ fit.point, bounds=(low, high)).x
+    nearest, some = low.copy(), low < high
+    rest = root @ fit.point - root[:, ~some] @ low[~some]
+    nearest[some] = lsq_linear(root[:, some], rest, bounds=(low[some], high[some])).x
     if float(np.sum((root @ (nearest - fit.point)) ** 2)) > SIDE**2:
         return False
     fitter.take_likeliest_noise(hypothesis.effects(fit.point))

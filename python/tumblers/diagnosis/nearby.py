@@ -22,8 +22,10 @@ __all__ = ["all_shaken", "shaken"]
 
 Floats = NDArray[np.float64]
 
-# How many points, and their spread in standard deviations and in shares of the ranges.
-_POINTS, _SPREADS, _SHARES = 18, (1.0, 2.0, 4.0), (0.02, 0.05, 0.1)
+# How many points in all directions, and their spread in standard deviations and in shares of the ranges; the shares by
+# which each parameter alone is moved either way. With such moves a pair was found in a dataset with a known truth in
+# which the points in all directions had led nowhere.
+_POINTS, _SPREADS, _SHARES, _ALONE = 18, (1.0, 2.0, 4.0), (0.02, 0.05, 0.1), (0.05, 0.15)
 # Fits that are looked around, how many of the points around one are fitted on in so many trial points, and how often.
 _SHAKEN, _FITS, _FIT_POINTS, _SHAKES = 3, 2, 3, 2
 
@@ -90,4 +92,7 @@ def _points_around(fit: Fit, dispersion: float, rng: np.random.Generator) -> lis
     root = np.linalg.cholesky(fit.covariance(dispersion))
     spreads = [*(spread * root for spread in _SPREADS), *(share * np.eye(count) for share in _SHARES)]
     low, high = fit.hypothesis.low, fit.hypothesis.high
-    return [np.clip(fit.point + spreads[k % len(spreads)] @ rng.normal(size=count), low, high) for k in range(_POINTS)]
+    moves = [spreads[k % len(spreads)] @ rng.normal(size=count) for k in range(_POINTS)]
+    free = np.eye(count)[low < high]
+    moves += [way * share * unit for unit in free for share in _ALONE for way in (-1.0, 1.0)]
+    return [np.clip(fit.point + move, low, high) for move in moves]

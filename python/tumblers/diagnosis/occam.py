@@ -3,9 +3,9 @@
 A cause has a few numbers, and most real ones need some of them: a tilt leans one way, a gradient points along one axis,
 a friction differs along the grain alone. The prior is a spike at neutral and a slab beside it (Mitchell and Beauchamp
 1988): any set S of an effect's optional parameters may be neutral as long as the effect still acts, all sets being as
-probable. The fit's û minimizes -2 ln likelihood + |u|²/σ_u², of which the likelihood alone is tempered by c. With the
-slab u ~ N(0, σ_u² 1), C⁻¹ = JᵀJ/c + 1/σ_u² and the slope -g of the tempered posterior's exponent at û, its mean m and
-its integral are Laplace's,
+probable but for those with a parameter of the effect's form at work, which share `FORM_SHARE`. The fit's û minimizes -2
+ln likelihood + |u|²/σ_u², of which the likelihood alone is tempered by c. With the slab u ~ N(0, σ_u² 1), C⁻¹ = JᵀJ/c +
+1/σ_u² and the slope -g of the tempered posterior's exponent at û, its mean m and its integral are Laplace's,
 
 ```text
 g = (1 - 1/c) û/σ_u²,      m = û - C g
@@ -16,7 +16,7 @@ and Savage's and Dickey's ratio gives those of the sets (Dickey 1971):
 
 ```text
 ln Z_S - ln Z = ln N(0; m_S, C_SS) - ln N(0; 0, σ_u² 1)
-ln Occam      = ln Z + cost/(2c) + ln (Σ_S Z_S / Z) - ln (number of sets)
+ln Occam      = ln Z + cost/(2c) + ln (Σ_S P(S) Z_S / Z)
 ```
 
 so that a parameter which the data know to be about zero costs its place among the sets alone, and one that they know to
@@ -28,12 +28,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import chain, combinations, product
-from math import inf
+from math import inf, log
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
 
+from ..effects.parameter import FORM_SHARE
 from .fit import Fit
 from .hypothesis import PRIOR_SIGMA, Hypothesis
 
@@ -58,8 +59,7 @@ def log_occam(fit: Fit, dispersion: float) -> float:
     covariance, slope, _ = _posterior(fit, dispersion)
     tempered = 0.5 * (1.0 - 1.0 / dispersion) * float(fit.point @ fit.point) / PRIOR_SIGMA**2
     slab = 0.5 * float(slope @ covariance @ slope) + 0.5 * float(np.linalg.slogdet(covariance / PRIOR_SIGMA**2)[1])
-    ratios = [ratio for _, ratio in _ratios(fit, dispersion)]
-    return slab - tempered + float(logsumexp(ratios)) - float(np.log(len(ratios)))
+    return slab - tempered + float(logsumexp([share for _, share in _shares(fit, dispersion)]))
 
 
 def unneeded(fit: Fit, dispersion: float) -> NDArray[np.bool_]:
@@ -70,7 +70,7 @@ def unneeded(fit: Fit, dispersion: float) -> NDArray[np.bool_]:
     fit, dispersion
         As in `log_occam`.
     """
-    held, _ = max(_ratios(fit, dispersion), key=lambda entry: entry[1])
+    held, _ = max(_shares(fit, dispersion), key=lambda entry: entry[1])
     return np.isin(np.arange(len(fit.point)), held)
 
 
@@ -82,15 +82,29 @@ def neutral_sets(hypothesis: Hypothesis) -> list[tuple[int, ...]]:
     hypothesis
         One or two effects.
     """
+    return [held for held, _ in _expected(hypothesis)]
+
+
+def _expected(hypothesis: Hypothesis) -> list[tuple[tuple[int, ...], float]]:
+    """Return the sets with ln P(S)."""
     by_effect, first = [], 0
     for n, kind in enumerate(hypothesis.kinds):
         last = first + len(kind.parameters)
         free = [j for j in range(first, last) if hypothesis.high[j] > hypothesis.low[j]]
         places = [j for j in free if not kind.parameters[j - first].always]
-        some = [held for held in _subsets(places) if held and hypothesis.at_work([j for j in free if j not in held])[n]]
-        by_effect.append([(), *some])
+        form = {j for j in free if kind.parameters[j - first].form}
+        strong = [j for j in free if j not in form]
+        some = [held for held in _subsets(places) if held and hypothesis.at_work(set(strong) - set(held))[n]]
+        sets: list[tuple[int, ...]] = [(), *some]
+        varying = [not form <= set(held) for held in sets]
+        counts = {False: varying.count(False), True: varying.count(True)}
+        parts = {False: 1.0 - FORM_SHARE, True: FORM_SHARE} if all(counts.values()) else {False: 1.0, True: 1.0}
+        by_effect.append([(held, log(parts[v] / counts[v])) for held, v in zip(sets, varying, strict=True)])
         first = last
-    return [tuple(chain.from_iterable(sets)) for sets in product(*by_effect)]
+    return [
+        (tuple(chain.from_iterable(held for held, _ in sets)), sum(share for _, share in sets))
+        for sets in product(*by_effect)
+    ]
 
 
 def _subsets(places: Sequence[int]) -> Iterator[tuple[int, ...]]:
@@ -105,18 +119,19 @@ def _posterior(fit: Fit, dispersion: float) -> tuple[Floats, Floats, Floats]:
     return covariance, slope, fit.point - covariance @ slope
 
 
-def _ratios(fit: Fit, dispersion: float) -> list[tuple[tuple[int, ...], float]]:
-    """Return the sets with ln Z_S - ln Z."""
+def _shares(fit: Fit, dispersion: float) -> list[tuple[tuple[int, ...], float]]:
+    """Return the sets with ln P(S) + ln Z_S - ln Z."""
     covariance, _, mean = _posterior(fit, dispersion)
     made = []
-    sets = neutral_sets(fit.hypothesis)
-    resting = set(np.flatnonzero(fit.hypothesis.rests(fit.point)).tolist()) & set(chain.from_iterable(sets))
-    for chosen in sets:
+    sets = _expected(fit.hypothesis)
+    optional = set(chain.from_iterable(held for held, _ in sets))
+    resting = set(np.flatnonzero(fit.hypothesis.rests(fit.point)).tolist()) & optional
+    for chosen, share in sets:
         if not resting <= set(chosen):
             made.append((chosen, -inf))
             continue
         held = list(chosen)
         point, block = mean[held] / PRIOR_SIGMA, covariance[np.ix_(held, held)] / PRIOR_SIGMA**2
         away = float(point @ np.linalg.solve(block, point)) if held else 0.0
-        made.append((chosen, -0.5 * away - 0.5 * float(np.linalg.slogdet(block)[1])))
+        made.append((chosen, share - 0.5 * away - 0.5 * float(np.linalg.slogdet(block)[1])))
     return made

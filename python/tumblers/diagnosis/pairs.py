@@ -35,8 +35,9 @@ _NEAR_BEST = 0.5
 # as many a pair was found in a dataset with a known truth in which it had not been.
 _SECONDS, _JOINED, _JOINTS = 3, 8, 4
 _HALVES = ((1.0, 1.0), (1.0, 0.5), (0.5, 1.0), (0.5, 0.5))
-# Shares of the way to either end of a range that are tried of what may stand in another's place.
-_GRID = (0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 1.0)
+# Shares of the way to either end of a range that are tried of what may stand in another's place, for effects with no
+# more parameters than this.
+_GRID, _FEW = (0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 1.0), 2
 # Trial points of a fit.
 _POINTS = 4
 
@@ -123,7 +124,7 @@ class Pairs:
             if other.names[0] in pair.names:
                 continue
             both = kept + other
-            points = [np.concatenate([point, start]) for start in [*other.starts, *_line(other)]]
+            points = [np.concatenate([point, start]) for start in [*other.starts, *_lines(other)]]
             for cost, start in least(self.fitter, both, points, 1, limit=limit, shown=[still, whole.residual]):
                 tried.append((cost + step_credit(self.fitter, both.effects(start)), len(tried), both, start))
         for _, _, both, start in sorted(tried, key=lambda entry: entry[:2])[:_SECONDS]:
@@ -177,11 +178,13 @@ def _share(single: Contender, share: float) -> Floats:
     return single.fit.hypothesis.weakened(single.point, share)
 
 
-def _line(other: Hypothesis) -> list[Floats]:
-    """Return points over the range of an effect of one parameter."""
-    if other.free != 1:
+def _lines(other: Hypothesis) -> list[Floats]:
+    """Return points over the range of each parameter of an effect of one or two, the other at neutral."""
+    if other.free > _FEW:
         return []
-    return [share * end for end in (other.low, other.high) if np.any(end) for share in _GRID]
+    units = np.eye(len(other.neutral))
+    ends = [end * unit for low_or_high in (other.low, other.high) for end, unit in zip(low_or_high, units, strict=True)]
+    return [share * end for end in ends if np.any(end) for share in _GRID]
 
 
 def firsts(singles: Sequence[Contender]) -> list[Contender]:

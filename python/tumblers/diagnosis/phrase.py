@@ -15,6 +15,8 @@ from .result import EffectEstimate, Interval
 __all__ = ["Phrase", "meaning_of", "phrase_of", "title_of", "unit_of"]
 
 _AXES = "xyz"
+# Of a plausible range.
+_DUST = 1e-4
 
 
 @dataclass(frozen=True)
@@ -98,9 +100,10 @@ class _Found:
         return with_interval(self.numbers[key], unit_of(self.name, key))
 
     def off(self, key: str) -> bool:
-        """Whether the interval leaves the neutral value out."""
-        neutral = next(p.neutral for p in _parameters(self.name) if p.key == key)
-        return not self.numbers[key].low <= neutral <= self.numbers[key].high
+        """Whether the interval leaves the neutral value out, by more than the dust that a fit leaves of no number."""
+        p = next(p for p in _parameters(self.name) if p.key == key)
+        dust = _DUST * (p.high - p.low)
+        return self.numbers[key].low > p.neutral + dust or self.numbers[key].high < p.neutral - dust
 
     def entries(self, key: str) -> list[int]:
         """Which entries of a vector to name: those that are off zero, or the largest."""
@@ -173,10 +176,15 @@ def _mass_centre(found: _Found) -> Phrase:
 def _friction(found: _Found) -> Phrase:
     nominal = found.dataset.substrate.friction_coefficient
     more = "more" if found.value("factor") >= 1.0 else "less"
-    return Phrase(
-        f"there is {more} friction than assumed",
-        f"a friction coefficient of {_factor(found, 'factor', nominal, '1')}",
-    )
+    drifts, grows = found.off("drift_per_s"), found.value("drift_per_s") > 0.0
+    drift = f" at the start of each trial, which drifts by {found.text('drift_per_s')} of it," if drifts else ""
+    if drifts and not found.off("factor"):
+        cause = f"friction {'grows' if grows else 'falls'} in the course of a trial"
+    else:
+        cause = f"there is {more} friction than assumed"
+        if drifts:
+            cause += f", and it {'grows' if grows else 'falls'} in the course of a trial"
+    return Phrase(cause, f"a friction coefficient of {_factor(found, 'factor', nominal, '1')}{drift}")
 
 
 def _anisotropy(found: _Found) -> Phrase:

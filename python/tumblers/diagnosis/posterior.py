@@ -8,6 +8,10 @@ with c the dispersion and
 ```text
 -2 ln posterior = (cost - prior)/c + prior
 ```
+
+Parameters that are neutral in the likeliest set of Occam's factor (`unneeded`) are neutral in all draws: what a trial
+tells apart must not rest on numbers that nothing asks for. The others' Gaussian is the one with these held, its mean at
+`u_f - I_ff⁻¹ I_fn (0 - u_n)` of the information I.
 """
 
 from __future__ import annotations
@@ -25,6 +29,7 @@ from .attribute import Attribution
 from .contender import Contender
 from .fitter import Fitter
 from .hypothesis import PRIOR_SIGMA, Hypothesis
+from .occam import unneeded
 
 __all__ = ["samples"]
 
@@ -58,9 +63,14 @@ def samples(
     if fit is None:
         return ((),)
     rng = np.random.default_rng(seed)
-    hypothesis, free = fit.hypothesis, fit.hypothesis.high > fit.hypothesis.low
-    covariance = fit.covariance(attribution.dispersion)[np.ix_(free, free)]
-    middle = np.clip(fit.point, hypothesis.low, hypothesis.high)
+    neutral = unneeded(fit, attribution.dispersion)
+    hypothesis = fit.hypothesis.held(neutral)
+    free = hypothesis.high > hypothesis.low
+    information = fit.information(attribution.dispersion)
+    covariance = np.asarray(np.linalg.inv(information[np.ix_(free, free)]), dtype=np.float64)
+    middle = np.where(neutral, 0.0, fit.point)
+    middle[free] += covariance @ information[np.ix_(free, neutral)] @ fit.point[neutral]
+    middle = np.clip(middle, hypothesis.low, hypothesis.high)
     wide = [
         (0.5, middle[free], covariance),
         (0.25, middle[free], _WIDER**2 * covariance),
@@ -84,7 +94,7 @@ def samples(
     order = np.argsort((apart @ axis) * np.sign(axis[np.argmax(np.abs(axis))]), kind="stable")
     marks = (np.arange(count) + rng.random()) / count
     drawn = order[np.minimum(np.searchsorted(np.cumsum(weights[order]), marks), len(points) - 1)]
-    return tuple(fit.hypothesis.effects(points[k]) for k in drawn)
+    return tuple(hypothesis.effects(points[k]) for k in drawn)
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,7 +13,7 @@ __all__ = ["is_tolerated", "least_deviation", "tolerated"]
 
 # So many standard deviations may a nominal number be off.
 _MOST = 3.0
-# Parameters that are a nominal number's factor, and the number.
+# Parameters that are a nominal number's factor, and the number; others of these effects are not tolerated at all.
 _FACTORS: Mapping[str, Mapping[str, str]] = {
     "magnetization_strength": {"factor": "magnetization"},
     "friction_coefficient": {"factor": "friction coefficient"},
@@ -28,7 +28,8 @@ _SAME: Mapping[str, tuple[str, ...]] = {"magnetization": ("field strength", "mas
 def tolerated(kind: type[Effect], scenarios: Sequence[Scenario]) -> tuple[tuple[float, float], ...] | None:
     """Return between which values of each parameter an effect says what a nominal number may be off.
 
-    Three standard deviations of the number's tolerance either way; None for what no nominal number's being off does.
+    Three standard deviations of the number's tolerance either way; None for what no nominal number's being off does,
+    the neutral value alone for a parameter that is no number's factor.
 
     Parameters
     ----------
@@ -43,8 +44,8 @@ def tolerated(kind: type[Effect], scenarios: Sequence[Scenario]) -> tuple[tuple[
     numbers = _FACTORS.get(kind.name)
     if numbers is None:
         return None
-    shares = [_MOST * _share(numbers[p.key]) for p in kind.parameters]
-    return tuple((1.0 - share, 1.0 + share) for share in shares)
+    shares = [_MOST * _share(numbers[p.key]) if p.key in numbers else 0.0 for p in kind.parameters]
+    return tuple((p.neutral - share, p.neutral + share) for p, share in zip(kind.parameters, shares, strict=True))
 
 
 def is_tolerated(effects: Sequence[Effect], scenarios: Sequence[Scenario]) -> bool:

@@ -6,7 +6,10 @@ from dataclasses import dataclass
 from math import asinh, sinh
 from typing import Literal
 
-__all__ = ["Nuisance", "Parameter"]
+__all__ = ["FORM_SHARE", "Nuisance", "Parameter"]
+
+# How often an effect is expected to vary in a way for which it has a parameter. A choice.
+FORM_SHARE = 0.2
 
 # What of each trial's sensor is fitted in every hypothesis, in the order in which a diagnosis keeps it.
 Nuisance = Literal["clock", "origin x", "origin y"]
@@ -40,6 +43,9 @@ class Parameter:
     always
         Whether it has a value of its own wherever the effect acts, as a wavelength has; any other may be at neutral
         while the rest act, and a diagnosis counts on that.
+    form
+        Whether it says how the effect varies, as a drift does: it is never at work alone, and expected in no more than
+        `FORM_SHARE` of what the effect causes.
     """
 
     key: str
@@ -54,6 +60,7 @@ class Parameter:
     fine: float | None = None
     beyond: Nuisance | None = None
     always: bool = False
+    form: bool = False
 
     @property
     def field(self) -> str:
