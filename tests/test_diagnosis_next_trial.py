@@ -86,6 +86,8 @@ def test_draws_do_not_contradict_what_was_seen(tie: Tie) -> None:
         assert sum(not 1.05 < factor < 2.1 for factor in factors) <= 2
         assert len(set(factors)) > 16
         assert max(factors) - min(factors) > 0.4
+        # Nothing that was seen asks for a drift.
+        assert all(effect.vector()[1] == 0.0 for (effect,) in tie.draws[FRICTION, seed])
 
 
 def test_draws_depend_on_the_seed_alone(tie: Tie) -> None:

@@ -12,7 +12,7 @@ import pytest
 
 from tumblers import _core
 from tumblers.dataset import Dataset, LabTrial, Outcome, Sensor, Track
-from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.comparison import Comparison, Residual
 from tumblers.diagnosis.fitter import Fitter
 from tumblers.diagnosis.pose import body_axis, heading_of, tilt_of
 from tumblers.diagnosis.simulator import LONGEST_STEP_S, Job, Simulator
@@ -21,6 +21,9 @@ from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.field import Field, StaticField
 from tumblers.model import Model
 from tumblers.presets import ROBOTS, SUBSTRATES, drive
+
+# Of a fit whose differences do not matter.
+NOTHING = Residual((), *np.empty((4, 0)))
 
 FRAMES_PER_SECOND = 60.0
 POSITION_NOISE_M, ANGLE_NOISE_DEG = 3e-6, 1.0

@@ -126,7 +126,7 @@ def test_a_search_asks_at_its_end_what_else_does_what_its_leader_does(monkeypatc
     assert max(tilt, gradient) < found[()] - 100.0
 
 
-def test_an_effect_of_few_parameters_is_looked_for_far_away_though_another_leaves_no_gap() -> None:
+def test_an_effect_of_one_strength_is_looked_for_far_away_though_another_leaves_no_gap() -> None:
     off = StaticField(strength_T=0.0, direction=(0.0, 1.0, 0.0))
     truth = FrictionCoefficient(factor=0.5)
     dataset = measure(plan((*PLANS[:2], PLANS[3], ("lying", off, 35.0))), (truth,), seed=3)

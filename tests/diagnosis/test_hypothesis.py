@@ -100,3 +100,12 @@ def test_what_is_weaker_keeps_its_wavelength_its_exponent_and_its_way() -> None:
     assert_allclose(half, [0.5 * full[0], full[1]], rtol=1e-9)
     joined = Hypothesis.of(SizeError, [scenario]) + rough
     assert_allclose(joined.weakened(np.full(9, 0.4), 0.5), [0.2, 0.2, 0.4, *[0.2] * 6])
+
+
+def test_a_form_is_no_strength() -> None:
+    scenario = Simulator(plan()).nominal(0)
+    friction, gradient = (Hypothesis.of(kind, [scenario]) for kind in (FrictionCoefficient, StrayFieldGradient))
+    assert (friction.free, friction.strengths) == (2, 1)
+    assert (gradient.free, gradient.strengths) == (4, 4)
+    assert (friction + gradient).strengths == 5
+    assert friction.held(np.array([True, False])).strengths == 0

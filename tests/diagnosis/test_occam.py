@@ -6,16 +6,14 @@ import numpy as np
 import pytest
 from scipy.special import logsumexp
 
-from tumblers.diagnosis.comparison import Residual
 from tumblers.diagnosis.fit import Fit
 from tumblers.diagnosis.hypothesis import PRIOR_SIGMA, Hypothesis
 from tumblers.diagnosis.occam import _shares, log_occam, neutral_sets, unneeded
 from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects.catalogue import CATALOGUE
 
-from .lab import plan
+from .lab import NOTHING, plan
 
-NOTHING = Residual((), *np.empty((4, 0)))
 SCENARIO = Simulator(plan()).nominal(0)
 
 

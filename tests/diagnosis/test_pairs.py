@@ -14,12 +14,15 @@ from tumblers.diagnosis.contender import of_fit, of_nominal
 from tumblers.diagnosis.fitter import Fitter
 from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.own_noise import settled_at
-from tumblers.diagnosis.pairs import Pairs, firsts, nested
+from tumblers.diagnosis.pairs import Pairs, _lines, firsts, nested
 from tumblers.diagnosis.simulator import Simulator
 from tumblers.diagnosis.thresholds import CLEAR
+from tumblers.effects.base import Effect
 from tumblers.effects.friction_coefficient import FrictionCoefficient
+from tumblers.effects.magnetization_strength import MagnetizationStrength
 from tumblers.effects.size_error import SizeError
 from tumblers.effects.surface_roughness import SurfaceRoughness
+from tumblers.effects.viscous_drag import ViscousDrag
 
 from .lab import LYING, coarse_lab, measure, plan
 
@@ -117,3 +120,16 @@ def test_two_are_joined_from_all_and_from_halves_of_what_either_is_alone(monkeyp
     costs = [fitter.cost(fitter.residuals(joined, [np.array(p)])[0], np.array(p), whole) for p in tried]
     assert started == [tried[int(np.argmin(costs))]]
     assert pair.cost <= min(costs)
+
+
+@pytest.mark.parametrize(
+    ("kind", "ends"), [(FrictionCoefficient, 4), (MagnetizationStrength, 2), (ViscousDrag, 1), (SizeError, 0)]
+)
+def test_what_may_stand_in_anothers_place_is_looked_for_over_the_range_of_its_one_strength_and_its_form(
+    kind: type[Effect], ends: int
+) -> None:
+    hypothesis = Hypothesis.of(kind, [Simulator(plan()).nominal(0)])
+    points = _lines(hypothesis)
+    assert len(points) == 7 * ends
+    assert all(np.sum(point != 0.0) == 1 for point in points)
+    assert all(np.all((hypothesis.low <= point) & (point <= hypothesis.high)) for point in points)

@@ -101,6 +101,12 @@ class Hypothesis:
         """How many coordinates have a range."""
         return int(np.sum(self.high > self.low))
 
+    @property
+    def strengths(self) -> int:
+        """How many coordinates that have a range say how strong an effect is, and not its form."""
+        form = [p.form for kind in self.kinds for p in kind.parameters]
+        return int(np.sum((self.high > self.low) & ~np.array(form)))
+
     def without(self, nuisances: Collection[Nuisance]) -> Hypothesis:
         """Return the hypothesis with the parameters at neutral that do what these nuisances do within their tolerances.
 

@@ -35,9 +35,8 @@ _NEAR_BEST = 0.5
 # as many a pair was found in a dataset with a known truth in which it had not been.
 _SECONDS, _JOINED, _JOINTS = 3, 8, 4
 _HALVES = ((1.0, 1.0), (1.0, 0.5), (0.5, 1.0), (0.5, 0.5))
-# Shares of the way to either end of a range that are tried of what may stand in another's place, for effects with no
-# more parameters than this.
-_GRID, _FEW = (0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 1.0), 2
+# Shares of the way to either end of a range that are tried of what may stand in another's place.
+_GRID = (0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 1.0)
 # Trial points of a fit.
 _POINTS = 4
 
@@ -179,8 +178,8 @@ def _share(single: Contender, share: float) -> Floats:
 
 
 def _lines(other: Hypothesis) -> list[Floats]:
-    """Return points over the range of each parameter of an effect of one or two, the other at neutral."""
-    if other.free > _FEW:
+    """Return points over the range of an effect of one strength, and over that of its form by itself."""
+    if other.strengths != 1:
         return []
     units = np.eye(len(other.neutral))
     ends = [end * unit for low_or_high in (other.low, other.high) for end, unit in zip(low_or_high, units, strict=True)]

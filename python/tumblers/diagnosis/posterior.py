@@ -27,6 +27,7 @@ from scipy.stats import qmc
 from ..effects.base import Effect
 from .attribute import Attribution
 from .contender import Contender
+from .fit import Fit
 from .fitter import Fitter
 from .hypothesis import PRIOR_SIGMA, Hypothesis
 from .occam import unneeded
@@ -63,14 +64,8 @@ def samples(
     if fit is None:
         return ((),)
     rng = np.random.default_rng(seed)
-    neutral = unneeded(fit, attribution.dispersion)
-    hypothesis = fit.hypothesis.held(neutral)
+    hypothesis, middle, covariance = _needed(fit, attribution.dispersion)
     free = hypothesis.high > hypothesis.low
-    information = fit.information(attribution.dispersion)
-    covariance = np.asarray(np.linalg.inv(information[np.ix_(free, free)]), dtype=np.float64)
-    middle = np.where(neutral, 0.0, fit.point)
-    middle[free] += covariance @ information[np.ix_(free, neutral)] @ fit.point[neutral]
-    middle = np.clip(middle, hypothesis.low, hypothesis.high)
     wide = [
         (0.5, middle[free], covariance),
         (0.25, middle[free], _WIDER**2 * covariance),
@@ -95,6 +90,18 @@ def samples(
     marks = (np.arange(count) + rng.random()) / count
     drawn = order[np.minimum(np.searchsorted(np.cumsum(weights[order]), marks), len(points) - 1)]
     return tuple(hypothesis.effects(points[k]) for k in drawn)
+
+
+def _needed(fit: Fit, dispersion: float) -> tuple[Hypothesis, Floats, Floats]:
+    """Return the hypothesis without what nothing asks for, and its Gaussian; the covariance of what has a range."""
+    neutral = unneeded(fit, dispersion)
+    hypothesis = fit.hypothesis.held(neutral)
+    free = hypothesis.high > hypothesis.low
+    information = fit.information(dispersion)
+    covariance = np.asarray(np.linalg.inv(information[np.ix_(free, free)]), dtype=np.float64)
+    middle = np.where(neutral, 0.0, fit.point)
+    middle[free] += covariance @ information[np.ix_(free, neutral)] @ fit.point[neutral]
+    return hypothesis, np.clip(middle, hypothesis.low, hypothesis.high), covariance
 
 
 @dataclass(frozen=True, eq=False)

@@ -43,8 +43,6 @@ _LEADING, _LEADING_POINTS, _POINTS = 6, 6, 4
 # Hypotheses that are fitted again from the beginnings of the trials; and of those whose points over the range follow
 # the beginnings better than their fit does.
 _REFINED, _PROMISING = 2, 4
-# Where another leaves no gap, effects of no more parameters than this are searched far away.
-_FEW = 2
 # The leader of before, found farther away, is a new first of pairs where that takes more than this share of what it
 # leaves off the objective.
 _FARTHER = 0.1
@@ -199,7 +197,7 @@ class Search:
         return likeliest_first(made)
 
     def _elsewhere(self, singles: Sequence[Contender], searched: Collection[tuple[str, ...]]) -> list[Contender]:
-        """Search far away for effects of few parameters too where another leaves no gap: one of them may be the cause.
+        """Search far away for effects of one strength too where another leaves no gap: one of them may be the cause.
 
         Those are fitted that follow the beginnings of the trials about as well.
         """
@@ -208,7 +206,10 @@ class Search:
         self.fitter.take_likeliest_noise(best.effects)
         goal = beginning(self.fitter, best)
         for k, contender in enumerate(made):
-            if k == 0 or contender.free > _FEW or contender.names in searched:
+            if k == 0 or contender.names in searched:
+                continue
+            assert contender.fit is not None
+            if contender.fit.hypothesis.strengths > 1:
                 continue
             wanted = (1.0 - AS_GOOD) * (beginning(self.fitter, contender) - goal)
             if promise(self.fitter, contender, self.seed) > max(CLEAR, wanted):
