@@ -7,7 +7,7 @@ import pytest
 
 from tumblers import preset_scenario, simulate
 from tumblers.blind.cause import CatalogueCause, OutsideCause
-from tumblers.blind.forms import FORMS, scaled
+from tumblers.blind.forms import FORMS, FrictionDrift, FrictionRunsIn, law_of, scaled
 from tumblers.blind.lab import Lab, Plan
 from tumblers.blind.law import EffectLaw, Law
 from tumblers.blind.outside import OUTSIDE
@@ -18,6 +18,8 @@ from tumblers.dataset import Sensor
 from tumblers.effects.base import Effect
 from tumblers.effects.camera_calibration import CameraCalibration
 from tumblers.effects.catalogue import CATALOGUE
+from tumblers.effects.friction_coefficient import FrictionCoefficient
+from tumblers.errors import InputError
 from tumblers.field import RotatingField, StaticField, TableField
 from tumblers.model import Model
 from tumblers.scenario import Scenario
@@ -146,6 +148,38 @@ def test_each_other_form_changes_the_run_in_its_own_way(name: str) -> None:
     assert (drawn.form_seed is None, cause(name, False).form_seed) == (False, None)
     assert changed > 1e-6
     assert other > 1e-7
+
+
+def test_a_form_is_drawn_as_seldom_as_a_diagnosis_expects_it_and_not_beside_another() -> None:
+    drawn = [cause("friction_coefficient", False, seed).effect.vector() for seed in range(400)]
+    assert all(factor != 1.0 for factor, _ in drawn)
+    # A binomial of 400 and 0.2, four of its standard deviations either way.
+    assert 48 <= sum(drift != 0.0 for _, drift in drawn) <= 112
+    others = [cause("friction_coefficient", True, seed) for seed in range(40)]
+    assert {other.form for other in others} == {"runs_in"}
+    assert all(other.effect.vector()[1] == 0.0 for other in others)
+
+
+def test_friction_runs_in_to_what_the_effect_says() -> None:
+    for seed in range(20):
+        law = law_of(FrictionCoefficient(factor=0.5), "runs_in", seed)
+        assert isinstance(law, FrictionRunsIn)
+        scales = [law.scale(time_s, {}) for time_s in (0.0, 0.5, 5.0)]
+        assert 0.1 <= scales[0] <= 0.5
+        assert scales == sorted(scales)
+        assert scales[-1] == pytest.approx(1.0, abs=1e-4)
+
+
+def test_an_answer_with_a_form_that_is_drawn_no_more_keeps_its_law_and_one_that_never_was_is_refused() -> None:
+    friction = FrictionCoefficient(factor=0.5)
+    drifts = law_of(friction, "drifts_with_time", 3)
+    assert isinstance(drifts, FrictionDrift)
+    assert drifts.scale(0.5, {}) == pytest.approx(1.0)
+    assert type(law_of(friction, "catalogue", None)) is EffectLaw
+    with pytest.raises(InputError, match=r"friction_coefficient\.form: found barrel, expected catalogue or runs_in"):
+        law_of(friction, "barrel", 3)
+    with pytest.raises(InputError, match=r"draft_angle\.form: found barrel, expected catalogue"):
+        law_of(CATALOGUE["draft_angle"].from_vector([1.0]), "barrel", 3)
 
 
 @pytest.mark.parametrize("name", OUTSIDE)

@@ -70,16 +70,20 @@ class CatalogueCause(Cause):
 
     def __init__(self, name: str, other_form: bool, scenarios: list[Scenario], rng: np.random.Generator) -> None:
         self.name = name
-        self.effect = _draw(CATALOGUE[name], scenarios, rng)
+        effect = _draw(CATALOGUE[name], scenarios, rng)
         self.form = "catalogue"
         details = int(rng.integers(2**63))
         if other_form and name in FORMS:
             self.form, self.form_seed = FORMS[name][0], details
+            # It varies in its own way.
+            values = [p.neutral if p.form else v for p, v in zip(effect.parameters, effect.vector(), strict=True)]
+            effect = type(effect).from_vector(values)
+        self.effect = effect
 
     def law(self, size: float) -> Law:
         """Return the law of this effect in its form."""
         # Each size of a cause has the same details.
-        return law_of(scaled(self.effect, size), self.form_seed)
+        return law_of(scaled(self.effect, size), self.form, self.form_seed)
 
     def parameters(self, size: float) -> dict[str, Any]:
         """Return the effect's parameters by their keys."""

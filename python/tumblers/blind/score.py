@@ -288,7 +288,7 @@ def _is_tie(record: Record, tie: TieCheck) -> bool:
 def _tie_sigma(folder: Path, record: Record) -> float:
     assert record.diagnosis is not None
     try:
-        truth = [law_of(effect_of(e.name, e.parameters), e.form_seed) for e in record.answer.effects]
+        truth = [law_of(effect_of(e.name, e.parameters), e.form, e.form_seed) for e in record.answer.effects]
         chosen = [
             EffectLaw(effect_of(e["name"], {key: p["estimate"] for key, p in e["parameters"].items()}))
             for e in record.diagnosis["effects"]
