@@ -33,7 +33,7 @@ def test_the_leader_is_held_in_a_step_that_is_short_enough_for_it() -> None:
     fitter.take_likeliest_noise(())
     nominal = of_nominal(fitter)
     (hypothesis,) = search.possible
-    there = (np.array([0.5]) - hypothesis.neutral) / hypothesis.scale
+    there = (np.array([0.5, 0.0]) - hypothesis.neutral) / hypothesis.scale
     leader = of_fit(fitter, fitter.fit(hypothesis, there, evaluations=1))
     found, still = concluded(fitter, nominal, [leader], quiet)
     assert fitter.comparison.simulator.step_s[0] < LONGEST_STEP_S

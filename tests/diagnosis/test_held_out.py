@@ -122,7 +122,7 @@ def lying_and_still() -> tuple[Fitter, Contender]:
     dataset = measure(plan([*LYING, ("still", OFF, 0.0)], duration_s=0.3), (FrictionCoefficient(factor=0.5),))
     fitter = Fitter(Comparison(dataset, Simulator(dataset, 1)))
     hypothesis = Hypothesis.of(FrictionCoefficient, [fitter.comparison.simulator.nominal(i) for i in fitter.trials])
-    there = (np.array([0.5]) - hypothesis.neutral) / hypothesis.scale
+    there = (np.array([0.5, 0.0]) - hypothesis.neutral) / hypothesis.scale
     fitted = of_fit(fitter, fitter.fit(hypothesis, there))
     assert abs(fitted.point[0]) > 0.1
     return fitter, fitted

@@ -19,6 +19,7 @@ from tumblers.diagnosis.fitter import Fitter
 from tumblers.diagnosis.loss import robust_cost
 from tumblers.diagnosis.pose import Path
 from tumblers.diagnosis.simulator import Simulator, _rows_every
+from tumblers.diagnosis.words import summary
 from tumblers.effects import get
 from tumblers.effects.base import Effect
 
@@ -66,6 +67,14 @@ def check_named(diagnosis: Diagnosis, truth: Effect) -> None:
 @pytest.mark.parametrize("name", ["size_error", "friction_coefficient", "field_rolloff"])
 def test_a_cause_is_named_with_its_size(name: str) -> None:
     check_named(diagnose(seen(TRUTHS[name]), effects=CONSIDERED, jobs=2), TRUTHS[name])
+
+
+def test_a_friction_that_drifts_is_named_with_its_drift() -> None:
+    truth = get("friction_coefficient").from_vector((0.7, 0.4))
+    diagnosis = diagnose(seen(truth), effects=CONSIDERED, jobs=2)
+    check_named(diagnosis, truth)
+    assert not diagnosis.effects[0].parameters["drift_per_s"].low <= 0.0
+    assert "grows in the course of a trial" in " ".join(summary(diagnosis).split())
 
 
 def test_drag_is_named_with_its_size(dragged: Diagnosis) -> None:

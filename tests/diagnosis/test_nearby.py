@@ -3,35 +3,70 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
+from tumblers.diagnosis import nearby
+from tumblers.diagnosis.contender import of_fit
 from tumblers.diagnosis.fit import Fit
+from tumblers.diagnosis.fitter import Fitter
 from tumblers.diagnosis.hypothesis import Hypothesis
-from tumblers.diagnosis.nearby import _points_around
+from tumblers.diagnosis.nearby import _moved_alone, _points_around, shaken
+from tumblers.diagnosis.simulator import Simulator
+from tumblers.effects.base import Effect
 from tumblers.effects.size_error import SizeError
+from tumblers.effects.stray_field_gradient import StrayFieldGradient
 
-from .lab import NOTHING, coarse_lab
-
-
-def moves(fit: Fit) -> list[np.ndarray]:
-    return [point - fit.point for point in _points_around(fit, 1.0, np.random.default_rng(0))]
+from .lab import NOTHING, coarse_lab, plan, quiet
 
 
-def test_each_parameter_is_moved_alone_either_way_and_all_are_together() -> None:
-    fitter = coarse_lab()
-    hypothesis = Hypothesis.of(SizeError, [fitter.comparison.simulator.nominal(i) for i in fitter.trials])
-    fit = Fit(hypothesis, np.array([0.1, -0.2]), NOTHING, 0.0, 10.0 * np.eye(2), np.full(2, 0.01))
-    found = moves(fit)
-    for j in range(2):
-        alone = sorted(move[j] for move in found if move[j] != 0.0 and move[1 - j] == 0.0)
-        np.testing.assert_allclose(alone, [-0.15, -0.05, 0.05, 0.15], atol=1e-12)
-    assert sum(np.all(move != 0.0) for move in found) >= 10
-    low, high = hypothesis.low, hypothesis.high
-    assert all(np.all((low <= fit.point + move) & (fit.point + move <= high)) for move in found)
+def fit_at(kind: type[Effect], point: list[float], held: list[bool] | None = None) -> Fit:
+    hypothesis = Hypothesis.of(kind, [Simulator(plan()).nominal(0)])
+    if held is not None:
+        hypothesis = hypothesis.held(np.array(held))
+    count = len(point)
+    return Fit(hypothesis, np.array(point), NOTHING, 0.0, 10.0 * np.eye(count), np.full(count, 0.01))
+
+
+def test_each_parameter_is_moved_alone_either_way_within_its_range() -> None:
+    fit = fit_at(SizeError, [0.1, 0.9])
+    found = [point - fit.point for point in _moved_alone(fit)]
+    assert sorted(move[0] for move in found if move[0]) == pytest.approx([-0.15, -0.05, 0.05, 0.15])
+    # Beyond its range is at its end.
+    assert sorted(move[1] for move in found if move[1]) == pytest.approx([-0.15, -0.05, 0.05, 0.1])
+    assert all(np.sum(move != 0.0) == 1 for move in found)
 
 
 def test_what_is_held_is_not_moved() -> None:
-    fitter = coarse_lab()
+    fit = fit_at(SizeError, [0.1, 0.0], [False, True])
+    assert [point[1] for point in _moved_alone(fit)] == [0.0] * 4
+    assert all(point[1] == 0.0 for point in _points_around(fit, 1.0, np.random.default_rng(0)))
+
+
+def test_a_move_that_changes_nothing_is_none() -> None:
+    # An exponent rests near zero, and has no less.
+    fit = fit_at(StrayFieldGradient, [0.3, 0.1, -0.2, 0.0])
+    here = fit.hypothesis.values(fit.point)
+    points = _moved_alone(fit)
+    assert all(np.any(fit.hypothesis.values(point) != here) for point in points)
+    assert sum(point[3] != 0.0 for point in points) == 1
+
+
+def test_one_that_is_moved_alone_is_fitted_on_beside_the_best_of_all(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    fitter = coarse_lab(SizeError(length_factor=1.05))
     hypothesis = Hypothesis.of(SizeError, [fitter.comparison.simulator.nominal(i) for i in fitter.trials])
-    held = hypothesis.held(np.array([False, True]))
-    fit = Fit(held, np.array([0.1, 0.0]), NOTHING, 0.0, 10.0 * np.eye(2), np.full(2, 0.01))
-    assert all(move[1] == 0.0 for move in moves(fit))
+    fitter.take_likeliest_noise(())
+    fit = fitter.fit(hypothesis, np.array([0.2, 0.0]), evaluations=3)
+    alone = {tuple(point) for point in _moved_alone(fit)}
+    starts: list[tuple[float, ...]] = []
+    descend = Fitter.descend
+
+    def noted(self: Fitter, h: Hypothesis, start: np.ndarray, *args: object, **keys: object) -> object:
+        starts.append(tuple(start))
+        return descend(self, h, start, *args, **keys)
+
+    monkeypatch.setattr(Fitter, "descend", noted)
+    shaken(fitter, of_fit(fitter, fit), 0, quiet)
+    first = starts[: nearby._FITS + 1]
+    assert [start in alone for start in first] == [False, False, True]

@@ -8,7 +8,7 @@ from scipy.special import logsumexp
 
 from tumblers.diagnosis.fit import Fit
 from tumblers.diagnosis.hypothesis import PRIOR_SIGMA, Hypothesis
-from tumblers.diagnosis.occam import _shares, log_occam, neutral_sets, unneeded
+from tumblers.diagnosis.occam import _expected, _shares, log_occam, neutral_sets, seldom_needed, unneeded
 from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects.catalogue import CATALOGUE
 
@@ -27,8 +27,7 @@ def hypothesis_of(*names: str) -> Hypothesis:
     ("names", "sets"),
     [
         (("viscous_drag",), {()}),
-        # A drift is not there without what drifts.
-        (("friction_coefficient",), {(), (1,)}),
+        (("friction_coefficient",), {(), (0,), (1,)}),
         (("substrate_tilt",), {(), (0,), (1,)}),
         # The direction of an error has no place of its own without its angle, nor a wavelength without amplitudes.
         (("magnetization_misalignment",), {()}),
@@ -115,3 +114,30 @@ def test_an_exponent_that_rests_at_zero_is_neutral_and_costs_its_place_among_the
     half = Fit(without, point, NOTHING, 30.0, slopes, np.full(4, 0.01))
     expected = log_occam(half, 1.0) + np.log(len(neutral_sets(without)) / count)
     assert log_occam(fit, 1.0) == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize("names", [("friction_coefficient",), ("substrate_tilt", "friction_coefficient")])
+def test_a_form_is_expected_in_a_fifth_of_the_cases(names: tuple[str, ...]) -> None:
+    hypothesis = hypothesis_of(*names)
+    expected = _expected(hypothesis)
+    drift = hypothesis.keys.index(("friction_coefficient", "drift_per_s"))
+    assert sum(np.exp(share) for _, share in expected) == pytest.approx(1.0)
+    assert sum(np.exp(share) for held, share in expected if drift not in held) == pytest.approx(0.2)
+    held = hypothesis.held(np.arange(len(hypothesis.neutral)) == drift)
+    assert sum(np.exp(share) for _, share in _expected(held)) == pytest.approx(1.0)
+
+
+def test_what_is_rather_neutral_than_not_is_by_all_sets_and_leaves_an_effect_at_work() -> None:
+    hypothesis = hypothesis_of("stray_field_gradient")
+    slopes = 20.0 * np.eye(4)
+
+    def asked(*point: float) -> list[int]:
+        fit = Fit(hypothesis, np.array(point), NOTHING, 30.0, slopes, np.full(4, 0.01))
+        return np.flatnonzero(seldom_needed(fit, 1.0)).tolist()
+
+    assert asked(0.5, 0.5, 0.5, 0.2) == []
+    assert asked(0.0, 0.5, 0.0, 0.2) == [0, 2]
+    # Nothing asks for any of them, and one has to act: the likeliest set says which.
+    fit = Fit(hypothesis, np.array([1e-4, 2e-4, 1e-4, 0.2]), NOTHING, 30.0, slopes, np.full(4, 0.01))
+    assert seldom_needed(fit, 1.0).tolist() == unneeded(fit, 1.0).tolist()
+    assert not seldom_needed(fit, 1.0)[:3].all()

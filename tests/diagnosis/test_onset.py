@@ -192,7 +192,7 @@ def test_a_field_that_falls_short_in_a_part_of_the_cycle_is_wrong_there(phase: f
         ("field_rolloff", (0.02,)),
         ("viscous_drag", (0.03,)),
         ("magnetization_misalignment", (6.0, 20.0)),
-        ("friction_coefficient", (0.4,)),
+        ("friction_coefficient", (0.4, 0.0)),
     ],
 )
 def test_what_acts_all_along_sets_in_nowhere(effect: str, vector: tuple[float, ...]) -> None:

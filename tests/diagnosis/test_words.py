@@ -134,18 +134,38 @@ def test_every_effect_reads_naturally(name: str) -> None:
 @pytest.mark.parametrize(
     ("factor", "drift", "cause", "amount"),
     [
-        ((1.2, 1.1, 1.3), (0.1, -0.1, 0.3), "there is more friction than assumed", "0.36 instead of 0.3)"),
+        (
+            (1.2, 1.1, 1.3),
+            (0.1, -0.1, 0.3),
+            "there is more friction than assumed",
+            "a friction coefficient of 1.20 ± 0.10 times the nominal one (0.36 instead of 0.3)",
+        ),
+        # What a fit leaves of no drift.
+        (
+            (1.2, 1.1, 1.3),
+            (2e-6, 1e-6, 0.3),
+            "there is more friction than assumed",
+            "a friction coefficient of 1.20 ± 0.10 times the nominal one (0.36 instead of 0.3)",
+        ),
         (
             (1.0, 0.9, 1.1),
             (0.3, 0.2, 0.4),
             "friction grows in the course of a trial",
-            "drifts by 0.30 ± 0.10 1/s of it,",
+            "a friction coefficient that grows from each trial's start by 30 ± 10 % per second",
         ),
         (
             (0.8, 0.7, 0.9),
             (-0.3, -0.4, -0.2),
-            "there is less friction than assumed, and it falls in the course of a trial",
-            "at the start of each trial, which drifts by -0.30 ± 0.10 1/s of it,",
+            "there is less friction than assumed at first, and it falls in the course of a trial",
+            "a friction coefficient of 0.80 ± 0.10 times the nominal one (0.24 instead of 0.3) at each trial's start, "
+            "falling by 30 ± 10 % per second,",
+        ),
+        # Without an interval it is the estimate that counts.
+        (
+            (1.0, NAN, NAN),
+            (-0.3, NAN, NAN),
+            "friction falls in the course of a trial",
+            "a friction coefficient that falls from each trial's start by 30 % per second",
         ),
     ],
 )
@@ -154,8 +174,7 @@ def test_a_drift_of_friction_is_told_where_it_is_off_zero(
 ) -> None:
     numbers = {"factor": Interval(*factor), "drift_per_s": Interval(*drift)}
     phrase = phrase_of(EffectEstimate("friction_coefficient", 0.9, numbers, ()), lab())
-    assert phrase.cause == cause
-    assert phrase.amount.endswith(amount)
+    assert (phrase.cause, phrase.amount) == (cause, amount)
 
 
 def test_an_effect_of_the_users_own_falls_back_to_its_docstring(tmp_path: Path, monkeypatch: Any) -> None:

@@ -53,7 +53,7 @@ def disturbed(scenario: Scenario, rng: np.random.Generator) -> Scenario:
         substrate=replace(
             scenario.substrate,
             compliance_m_per_N=0.02 * size / weight,
-            friction_drift_per_s=rng.uniform(-0.5, 0.5) / second,
+            friction_drift_per_s=rng.uniform(-1.5, 0.5) / second,
         ),
     )
 

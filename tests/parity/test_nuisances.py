@@ -56,7 +56,7 @@ def rigid() -> Dataset:
 
 CASES: dict[str, tuple[Effect, ...]] = {
     "near": (),
-    "far": (get("friction_coefficient").from_vector((0.3,)),),
+    "far": (get("friction_coefficient").from_vector((0.3, 0.0)),),
     "camera": (get("camera_calibration").from_vector((1.1, 20.0, 3e-4, -2e-4, 0.03)),),
 }
 

@@ -71,7 +71,7 @@ fn every_step_of_the_suite_solves_the_unreduced_problem() {
         let mut stepper = Stepper::new(&trial, SolverKind::Reduced);
         run_checked(&mut stepper, &trial, |stepper, solution| {
             let e = trial.substrate().friction_ellipsoid;
-            let bound = trial.substrate().friction_coefficient * solution.normal;
+            let bound = trial.substrate().friction_at(stepper.time() - 0.5 * trial.step()) * solution.normal;
             let friction = solution.friction.component_div(&Vec3::from(e));
             if trial.model().adhesion_enters == AdhesionEnters::Normal {
                 assert!(friction.norm() <= bound * (1.0 + 1e-9) + 1e-22, "outside the ellipsoid");

@@ -24,6 +24,7 @@ from math import log
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
+from scipy.stats import chi2
 
 from ..effects.base import Effect
 from ..progress import OnPhase
@@ -58,6 +59,8 @@ _LAST_POINTS = 12
 # Standard deviations to either end of a 90 % interval, and by how much ln of a likelihood moves within one where there
 # are tracks, with the point at which the noise is measured.
 SIDE, ROUGH = 1.645, 3.0
+# How much of a fit's Gaussian is looked at for a point that is within the nominal numbers' tolerances.
+_WITHIN = 0.9
 # Of equals the one that the catalogue lists first is preferred.
 _PER_PLACE = 0.005
 
@@ -214,11 +217,12 @@ def _may_be_tolerated(fitter: Fitter, fit: Fit, scenarios: Sequence[Scenario], d
     nearest, some = low.copy(), low < high
     rest = root @ fit.point - root[:, ~some] @ low[~some]
     nearest[some] = lsq_linear(root[:, some], rest, bounds=(low[some], high[some])).x
-    if float(np.sum((root @ (nearest - fit.point)) ** 2)) > SIDE**2:
+    most = float(chi2.ppf(_WITHIN, hypothesis.free))
+    if float(np.sum((root @ (nearest - fit.point)) ** 2)) > most:
         return False
     fitter.take_likeliest_noise(hypothesis.effects(fit.point))
     there = fitter.residuals(hypothesis, [nearest])[0]
-    return fitter.cost(there, nearest) - fitter.again(fit).cost <= (SIDE**2 + 2.0 * ROUGH) * dispersion
+    return fitter.cost(there, nearest) - fitter.again(fit).cost <= (most + 2.0 * ROUGH) * dispersion
 
 
 def _seen(fitter: Fitter, contender: Contender, first: bool) -> Contender:

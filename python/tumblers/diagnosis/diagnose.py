@@ -13,6 +13,7 @@ from ..check import thread_count
 from ..dataset import Dataset
 from ..effects.base import Effect
 from ..effects.catalogue import CATALOGUE, get
+from ..effects.parameter import FORM_SHARE
 from ..errors import InputError, show
 from ..progress import OnPhase, phases
 from ..version import __version__
@@ -338,7 +339,8 @@ def _assumptions(comparison: Comparison, attribution: Attribution) -> tuple[str,
         f"The sensor's nuisances are fitted in every hypothesis: clock within {clock}, origin within "
         f"{1e6 * sensor.origin_tolerance_m:g} µm, heading within {sensor.heading_tolerance_deg:g}°, scale within "
         f"{100.0 * sensor.scale_tolerance:g} %. Larger ones are the effect camera_calibration, the same in all trials.",
-        "A substrate that is tilted, rough or sticky is so alike under every trial's start.",
+        "A substrate that is tilted, rough or sticky is so alike under every trial's start. A friction that drifts "
+        f"does so anew, and alike, in every trial, which is expected in {100.0 * FORM_SHARE:g} % of the cases.",
         f"The nominal numbers may be off by these standard deviations: {nominal}.",
         "What halving the step changes is part of the noise, around each hypothesis that counts for itself, and in "
         "each trial as much of it as makes the differences likeliest. One that comes near the best, and says the "

@@ -103,7 +103,7 @@ class Hypothesis:
 
     @property
     def strengths(self) -> int:
-        """How many coordinates that have a range say how strong an effect is, and not its form."""
+        """How many coordinates with a range are no parameter of an effect's form."""
         form = [p.form for kind in self.kinds for p in kind.parameters]
         return int(np.sum((self.high > self.low) & ~np.array(form)))
 

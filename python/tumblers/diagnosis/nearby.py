@@ -26,7 +26,8 @@ Floats = NDArray[np.float64]
 # which each parameter alone is moved either way. With such moves a pair was found in a dataset with a known truth in
 # which the points in all directions had led nowhere.
 _POINTS, _SPREADS, _SHARES, _ALONE = 18, (1.0, 2.0, 4.0), (0.02, 0.05, 0.1), (0.05, 0.15)
-# Fits that are looked around, how many of the points around one are fitted on in so many trial points, and how often.
+# Fits that are looked around, how many of the points around one are fitted on in so many trial points, beside one with
+# a parameter moved alone, and how often.
 _SHAKEN, _FITS, _FIT_POINTS, _SHAKES = 3, 2, 3, 2
 
 
@@ -72,8 +73,10 @@ def shaken(fitter: Fitter, contender: Contender, seed: int, tell: OnPhase) -> Co
         assert best.fit is not None
         hypothesis = best.fit.hypothesis
         fitter.take_likeliest_noise(best.effects)
-        points = _points_around(best.fit, fitter.comparison.alike, rng)
-        starts = [point for _, point in least(fitter, hypothesis, points, _FITS)]
+        around = _points_around(best.fit, fitter.comparison.alike, rng)
+        starts = [point for _, point in least(fitter, hypothesis, around, _FITS)]
+        if alone := _moved_alone(best.fit):
+            starts += [point for _, point in least(fitter, hypothesis, alone, 1)]
         ends = [fitter.descend(hypothesis, start, evaluations=_FIT_POINTS) for start in starts]
         cost, point = min(ends, key=lambda end: end[0])
         # What is clearly worse against this noise is not looked at against its own.
@@ -93,6 +96,14 @@ def _points_around(fit: Fit, dispersion: float, rng: np.random.Generator) -> lis
     spreads = [*(spread * root for spread in _SPREADS), *(share * np.eye(count) for share in _SHARES)]
     low, high = fit.hypothesis.low, fit.hypothesis.high
     moves = [spreads[k % len(spreads)] @ rng.normal(size=count) for k in range(_POINTS)]
-    free = np.eye(count)[low < high]
-    moves += [way * share * unit for unit in free for share in _ALONE for way in (-1.0, 1.0)]
     return [np.clip(fit.point + move, low, high) for move in moves]
+
+
+def _moved_alone(fit: Fit) -> list[Floats]:
+    """Return points with one parameter moved either way, without those that are the fit itself."""
+    hypothesis = fit.hypothesis
+    free = np.eye(len(fit.point))[hypothesis.low < hypothesis.high]
+    moves = [way * share * unit for unit in free for share in _ALONE for way in (-1.0, 1.0)]
+    points = [np.clip(fit.point + move, hypothesis.low, hypothesis.high) for move in moves]
+    here = hypothesis.values(fit.point)
+    return [point for point in points if np.any(hypothesis.values(point) != here)]

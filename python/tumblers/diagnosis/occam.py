@@ -3,9 +3,10 @@
 A cause has a few numbers, and most real ones need some of them: a tilt leans one way, a gradient points along one axis,
 a friction differs along the grain alone. The prior is a spike at neutral and a slab beside it (Mitchell and Beauchamp
 1988): any set S of an effect's optional parameters may be neutral as long as the effect still acts, all sets being as
-probable but for those with a parameter of the effect's form at work, which share `FORM_SHARE`. The fit's û minimizes -2
-ln likelihood + |u|²/σ_u², of which the likelihood alone is tempered by c. With the slab u ~ N(0, σ_u² 1), C⁻¹ = JᵀJ/c +
-1/σ_u² and the slope -g of the tempered posterior's exponent at û, its mean m and its integral are Laplace's,
+probable; but where an effect has parameters of its form, the sets with one of these at work share `FORM_SHARE` of the
+prior, and the others share the rest. The fit's û minimizes -2 ln likelihood + |u|²/σ_u², of which the likelihood alone
+is tempered by c. With the slab u ~ N(0, σ_u² 1), C⁻¹ = JᵀJ/c + 1/σ_u² and the slope -g of the tempered posterior's
+exponent at û, its mean m and its integral are Laplace's,
 
 ```text
 g = (1 - 1/c) û/σ_u²,      m = û - C g
@@ -38,7 +39,7 @@ from ..effects.parameter import FORM_SHARE
 from .fit import Fit
 from .hypothesis import PRIOR_SIGMA, Hypothesis
 
-__all__ = ["log_occam", "neutral_sets", "unneeded"]
+__all__ = ["log_occam", "neutral_sets", "seldom_needed", "unneeded"]
 
 Floats = NDArray[np.float64]
 
@@ -74,6 +75,27 @@ def unneeded(fit: Fit, dispersion: float) -> NDArray[np.bool_]:
     return np.isin(np.arange(len(fit.point)), held)
 
 
+def seldom_needed(fit: Fit, dispersion: float) -> NDArray[np.bool_]:
+    """Return which coordinates are rather neutral than not, all sets counted, shape (p,).
+
+    The median probability model (Barbieri and Berger 2004); those of the likeliest set where that leaves an effect
+    without what it acts by.
+
+    Parameters
+    ----------
+    fit, dispersion
+        As in `log_occam`.
+    """
+    shares = _shares(fit, dispersion)
+    whole = float(logsumexp([share for _, share in shares]))
+    neutral = np.zeros(len(fit.point))
+    for held, share in shares:
+        neutral[list(held)] += np.exp(share - whole)
+    seldom = neutral > 0.5
+    acting = np.flatnonzero(~seldom & (fit.hypothesis.high > fit.hypothesis.low)).tolist()
+    return seldom if all(fit.hypothesis.at_work(acting)) else unneeded(fit, dispersion)
+
+
 def neutral_sets(hypothesis: Hypothesis) -> list[tuple[int, ...]]:
     """Return the sets of coordinates that may be neutral while every effect acts; the first is empty.
 
@@ -93,8 +115,7 @@ def _expected(hypothesis: Hypothesis) -> list[tuple[tuple[int, ...], float]]:
         free = [j for j in range(first, last) if hypothesis.high[j] > hypothesis.low[j]]
         places = [j for j in free if not kind.parameters[j - first].always]
         form = {j for j in free if kind.parameters[j - first].form}
-        strong = [j for j in free if j not in form]
-        some = [held for held in _subsets(places) if held and hypothesis.at_work(set(strong) - set(held))[n]]
+        some = [held for held in _subsets(places) if held and hypothesis.at_work([j for j in free if j not in held])[n]]
         sets: list[tuple[int, ...]] = [(), *some]
         varying = [not form <= set(held) for held in sets]
         counts = {False: varying.count(False), True: varying.count(True)}

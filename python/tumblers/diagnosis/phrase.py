@@ -100,10 +100,14 @@ class _Found:
         return with_interval(self.numbers[key], unit_of(self.name, key))
 
     def off(self, key: str) -> bool:
-        """Whether the interval leaves the neutral value out, by more than the dust that a fit leaves of no number."""
-        p = next(p for p in _parameters(self.name) if p.key == key)
+        """Whether the interval leaves the neutral value out, or where there is none the estimate is not neutral.
+
+        By more than the dust that a fit leaves of no number.
+        """
+        p, found = next(p for p in _parameters(self.name) if p.key == key), self.numbers[key]
         dust = _DUST * (p.high - p.low)
-        return self.numbers[key].low > p.neutral + dust or self.numbers[key].high < p.neutral - dust
+        low, high = (end if isfinite(end) else found.estimate for end in (found.low, found.high))
+        return low > p.neutral + dust or high < p.neutral - dust
 
     def entries(self, key: str) -> list[int]:
         """Which entries of a vector to name: those that are off zero, or the largest."""
@@ -176,15 +180,22 @@ def _mass_centre(found: _Found) -> Phrase:
 def _friction(found: _Found) -> Phrase:
     nominal = found.dataset.substrate.friction_coefficient
     more = "more" if found.value("factor") >= 1.0 else "less"
-    drifts, grows = found.off("drift_per_s"), found.value("drift_per_s") > 0.0
-    drift = f" at the start of each trial, which drifts by {found.text('drift_per_s')} of it," if drifts else ""
-    if drifts and not found.off("factor"):
-        cause = f"friction {'grows' if grows else 'falls'} in the course of a trial"
-    else:
-        cause = f"there is {more} friction than assumed"
-        if drifts:
-            cause += f", and it {'grows' if grows else 'falls'} in the course of a trial"
-    return Phrase(cause, f"a friction coefficient of {_factor(found, 'factor', nominal, '1')}{drift}")
+    amount = f"a friction coefficient of {_factor(found, 'factor', nominal, '1')}"
+    if not found.off("drift_per_s"):
+        return Phrase(f"there is {more} friction than assumed", amount)
+    drift = found.interval("drift_per_s")
+    way, sign = ("grows", 100.0) if drift.estimate > 0.0 else ("falls", -100.0)
+    low, high = sorted((sign * drift.low, sign * drift.high))
+    share = with_interval(Interval(sign * drift.estimate, low, high), "%")
+    if not found.off("factor"):
+        return Phrase(
+            f"friction {way} in the course of a trial",
+            f"a friction coefficient that {way} from each trial's start by {share} per second",
+        )
+    return Phrase(
+        f"there is {more} friction than assumed at first, and it {way} in the course of a trial",
+        f"{amount} at each trial's start, {'growing' if sign > 0.0 else 'falling'} by {share} per second,",
+    )
 
 
 def _anisotropy(found: _Found) -> Phrase:

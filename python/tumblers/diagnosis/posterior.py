@@ -9,9 +9,9 @@ with c the dispersion and
 -2 ln posterior = (cost - prior)/c + prior
 ```
 
-Parameters that are neutral in the likeliest set of Occam's factor (`unneeded`) are neutral in all draws: what a trial
-tells apart must not rest on numbers that nothing asks for. The others' Gaussian is the one with these held, its mean at
-`u_f - I_ff⁻¹ I_fn (0 - u_n)` of the information I.
+Parameters that are rather neutral than not by Occam's factor (`seldom_needed`) are neutral in all draws: what a trial
+tells apart must not rest on numbers that nothing asks for. The others' Gaussian is the one with these held, about
+`u_f - I_ff⁻¹ I_fn (0 - u_n)` with the fit u and the information I; the weights make up for what the tempering moves.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from .contender import Contender
 from .fit import Fit
 from .fitter import Fitter
 from .hypothesis import PRIOR_SIGMA, Hypothesis
-from .occam import unneeded
+from .occam import seldom_needed
 
 __all__ = ["samples"]
 
@@ -93,8 +93,8 @@ def samples(
 
 
 def _needed(fit: Fit, dispersion: float) -> tuple[Hypothesis, Floats, Floats]:
-    """Return the hypothesis without what nothing asks for, and its Gaussian; the covariance of what has a range."""
-    neutral = unneeded(fit, dispersion)
+    """Return the hypothesis without what is seldom needed, and its Gaussian; the covariance of what has a range."""
+    neutral = seldom_needed(fit, dispersion)
     hypothesis = fit.hypothesis.held(neutral)
     free = hypothesis.high > hypothesis.low
     information = fit.information(dispersion)

@@ -44,8 +44,8 @@ class Parameter:
         Whether it has a value of its own wherever the effect acts, as a wavelength has; any other may be at neutral
         while the rest act, and a diagnosis counts on that.
     form
-        Whether it says how the effect varies, as a drift does: it is never at work alone, and expected in no more than
-        `FORM_SHARE` of what the effect causes.
+        Whether it says how the effect varies, as a drift does, which a diagnosis expects in `FORM_SHARE` of the cases
+        only.
     """
 
     key: str

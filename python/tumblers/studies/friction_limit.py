@@ -22,8 +22,8 @@ def friction_limit_deg(scenario: Scenario, adhesion_N: float = 0.0) -> float:
 
         φ_max = φ_μ + asin(sin φ_μ (F_elect + F_adhesion)/(m g))
 
-    Left out are inertia, the slope to the side, what else pulls (`surroundings`), and whether the field can turn the
-    robot.
+    Left out are inertia, a drift of the friction, the slope to the side, what else pulls (`surroundings`), and whether
+    the field can turn the robot.
 
     Parameters
     ----------

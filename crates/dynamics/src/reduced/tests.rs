@@ -22,7 +22,7 @@ fn trial(shape: usize, magnetic_torque: MagneticTorque, mu: f64) -> Trial {
         robot: Robot::new(Arc::new(body.unwrap()), 3e-8, Vec3::new(1e-8, 2e-7, 2e-8)).unwrap(),
         substrate: Substrate {
             friction_coefficient: mu,
-            friction_drift: 0.3,
+            friction_drift: 0.0,
             friction_ellipsoid: [1.0, 0.7, 2e-4],
             adhesion: 20.0,
             electrostatic_force: 1e-7,

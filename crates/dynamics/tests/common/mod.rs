@@ -114,6 +114,7 @@ pub fn disturbed(mut parts: TrialParts) -> TrialParts {
     let body = parts.robot.body().with_center_of_mass([1e-5, -2e-5, 5e-6]).unwrap();
     parts.robot = Robot::new(Arc::new(body), parts.robot.mass(), *parts.robot.moment()).unwrap();
     parts.substrate.compliance = 0.5;
+    parts.substrate.friction_drift = -0.4;
     parts.field = parts.field.with_quadrature(1.2, 0.2).unwrap();
     parts.side_incline = 0.05;
     parts.relief = Relief::new(2e-3, &[6e-6, -3e-6], &[1e-5, 2e-6]).unwrap();
