@@ -25,7 +25,7 @@ class FrictionCoefficient(Effect):
     or with the place, and a drift that goes on from trial to trial.
 
     Source: Coulomb; Xie, Bi, Cappelleri, Chakraborty: μ from tilting the substrate until the robot slides; Blau 2005,
-    Tribology International 38, 1007: running-in changes friction by tens of per cent, either way.
+    Tribology International 38, 1007, on running-in. The drift is a first order of any law; its range is a choice.
 
     Attributes
     ----------

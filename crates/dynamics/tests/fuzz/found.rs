@@ -53,7 +53,8 @@ fn a_flat_hull_of_many_faces_tumbles_like_any_other() {
 
 /// A flat body that falls on its rim again and again, for whose every landing the general solver is asked, so that several of
 /// its steps are loose, and were more than a hundred when it was found: more than a bound of one in ten thousand steps left
-/// for a million of all others. What is counted is cases; each of these steps keeps its friction in the ellipsoid to 1e-10 of the square.
+/// for a million of all others. What is counted is cases; each of these steps keeps its friction in the ellipsoid to 1e-10 of
+/// the square.
 #[test]
 fn a_case_with_many_loose_steps_is_one_case() {
     let tally = run(1_099_511_627_785, MOST_POINTS, Duration::MAX);
