@@ -96,19 +96,14 @@ def seldom_needed(fit: Fit, dispersion: float) -> NDArray[np.bool_]:
     return seldom if all(fit.hypothesis.at_work(acting)) else unneeded(fit, dispersion)
 
 
-def neutral_sets(hypothesis: Hypothesis) -> list[tuple[int, ...]]:
-    """Return the sets of coordinates that may be neutral while every effect acts; the first is empty.
+def neutral_sets(hypothesis: Hypothesis) -> dict[tuple[int, ...], float]:
+    """Return the sets S of coordinates that may be neutral while every effect acts, with ln P(S); the first is empty.
 
     Parameters
     ----------
     hypothesis
         One or two effects.
     """
-    return [held for held, _ in _expected(hypothesis)]
-
-
-def _expected(hypothesis: Hypothesis) -> list[tuple[tuple[int, ...], float]]:
-    """Return the sets with ln P(S)."""
     by_effect, first = [], 0
     for n, kind in enumerate(hypothesis.kinds):
         last = first + len(kind.parameters)
@@ -122,10 +117,10 @@ def _expected(hypothesis: Hypothesis) -> list[tuple[tuple[int, ...], float]]:
         parts = {False: 1.0 - FORM_SHARE, True: FORM_SHARE} if all(counts.values()) else {False: 1.0, True: 1.0}
         by_effect.append([(held, log(parts[v] / counts[v])) for held, v in zip(sets, varying, strict=True)])
         first = last
-    return [
-        (tuple(chain.from_iterable(held for held, _ in sets)), sum(share for _, share in sets))
+    return {
+        tuple(chain.from_iterable(held for held, _ in sets)): sum(share for _, share in sets)
         for sets in product(*by_effect)
-    ]
+    }
 
 
 def _subsets(places: Sequence[int]) -> Iterator[tuple[int, ...]]:
@@ -144,10 +139,10 @@ def _shares(fit: Fit, dispersion: float) -> list[tuple[tuple[int, ...], float]]:
     """Return the sets with ln P(S) + ln Z_S - ln Z."""
     covariance, _, mean = _posterior(fit, dispersion)
     made = []
-    sets = _expected(fit.hypothesis)
-    optional = set(chain.from_iterable(held for held, _ in sets))
+    sets = neutral_sets(fit.hypothesis)
+    optional = set(chain.from_iterable(sets))
     resting = set(np.flatnonzero(fit.hypothesis.rests(fit.point)).tolist()) & optional
-    for chosen, share in sets:
+    for chosen, share in sets.items():
         if not resting <= set(chosen):
             made.append((chosen, -inf))
             continue
