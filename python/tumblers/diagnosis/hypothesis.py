@@ -107,6 +107,12 @@ class Hypothesis:
         form = [p.form for kind in self.kinds for p in kind.parameters]
         return int(np.sum((self.high > self.low) & ~np.array(form)))
 
+    @property
+    def ends(self) -> list[Floats]:
+        """Points u at either end of the range of each coordinate that has one there, the others neutral."""
+        units = np.eye(len(self.neutral))
+        return [end * unit for side in (self.low, self.high) for end, unit in zip(side, units, strict=True) if end]
+
     def without(self, nuisances: Collection[Nuisance]) -> Hypothesis:
         """Return the hypothesis with the parameters at neutral that do what these nuisances do within their tolerances.
 

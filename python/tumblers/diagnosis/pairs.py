@@ -181,9 +181,7 @@ def _lines(other: Hypothesis) -> list[Floats]:
     """Return points over the range of an effect of one strength, and over that of its form by itself."""
     if other.strengths != 1:
         return []
-    units = np.eye(len(other.neutral))
-    ends = [end * unit for low_or_high in (other.low, other.high) for end, unit in zip(low_or_high, units, strict=True)]
-    return [share * end for end in ends if np.any(end) for share in _GRID]
+    return [share * end for end in other.ends for share in _GRID]
 
 
 def firsts(singles: Sequence[Contender]) -> list[Contender]:

@@ -42,21 +42,17 @@ def beyond_thresholds(fitter: Fitter, hypothesis: Hypothesis, nominal: Residual)
     nominal
         How wrong the nominal model is.
     """
-    count = len(hypothesis.neutral)
     if hypothesis.free > _FEW:
         return []
     # By number: a robot that soon leaves the view says little, but may be farther off than any.
     off = [fitter.trial_cost(nominal, i) / max(fitter.comparison.weighed[i], 1.0) for i in fitter.trials]
     wrong = tuple(int(i) for i in np.argsort(off, kind="stable")[-_WORST:] if off[i] > 1.0)
-    ends = [
-        end * unit for ends in (hypothesis.low, hypothesis.high) for end, unit in zip(ends, np.eye(count), strict=True)
-    ]
     found: list[tuple[float, Floats]] = []
-    zeros = np.zeros(count)
+    zeros = np.zeros(len(hypothesis.neutral))
     for i in wrong:
         # With what all trials share fitted to this one alone, as along the lines.
         still = fitter.cost(fitter.residuals(hypothesis, [zeros], (i,))[0], zeros, (i,))
-        lines = [_along(fitter, hypothesis, end, still, i) for end in ends if np.any(end)]
+        lines = [_along(fitter, hypothesis, end, still, i) for end in hypothesis.ends]
         found += [(cost - still, point) for cost, point in lines if cost < still - CLEAR]
     return [point for _, point in sorted(found, key=lambda entry: entry[0])[:_HINTS]]
 
