@@ -56,6 +56,28 @@ def test_a_likelier_effect_is_named_where_the_nominal_model_leaves_a_gap_against
     assert (found, chosen) == (verdict, nominal if verdict == "no_gap" else best)
 
 
+@pytest.mark.parametrize(
+    ("ahead", "tracked", "verdict"),
+    [
+        # Twenty to one is little where the evidence of tracks is known to e^3 alone; of outcomes it is known.
+        (5.0, COUNT, "no_gap"),
+        (5.0, 0, "explained"),
+        (7.0, COUNT, "explained"),
+        (2.0, 0, "no_gap"),
+    ],
+)
+def test_where_noise_may_explain_all_an_effect_is_named_by_more_than_its_evidence_may_be_off(
+    ahead: float, tracked: int, verdict: str
+) -> None:
+    share, odds = LAPSE / 2, np.exp(ahead)
+    best = contender("size_error", 0.9, share + (1.0 - LAPSE) * odds / (1.0 + odds))
+    nominal = contender("", 1.0, share + (1.0 - LAPSE) / (1.0 + odds))
+    kinds = {} if tracked else {f"speed{k}": 1.0 for k in range(COUNT)}
+    comparison = SimpleNamespace(sizes=(COUNT,), floors=(SimpleNamespace(tracked=tracked, outcome_scale=kinds),))
+    found, _ = judge(comparison, Attribution((best, nominal), 1.0, True), foretold=True)  # type: ignore[arg-type]
+    assert found == verdict
+
+
 @pytest.mark.parametrize(("of_the_nominal_model", "verdict"), [(0.44, "no_gap"), (0.40, "explained")])
 def test_what_is_less_probable_than_that_nothing_is_wrong_is_not_named(
     of_the_nominal_model: float, verdict: str
@@ -78,7 +100,9 @@ def test_where_nothing_is_likelier_than_the_nominal_model_it_is_right_or_nothing
 ) -> None:
     nominal, other = contender("", 1.7, 0.8), contender("viscous_drag", 1.7, 0.1)
     attribution = Attribution((nominal, other), 1.0, nominal_is_right)
-    found, chosen = judge(SimpleNamespace(sizes=(COUNT,)), attribution, True)  # type: ignore[arg-type]
+    floors = (SimpleNamespace(tracked=COUNT, outcome_scale={}),)
+    comparison = SimpleNamespace(sizes=(COUNT,), floors=floors)
+    found, chosen = judge(comparison, attribution, True)  # type: ignore[arg-type]
     assert (found, chosen) == (verdict, nominal)
 
 

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
-from math import log
+from math import exp, log
 
 import numpy as np
 from numpy.typing import NDArray
@@ -95,6 +95,18 @@ class Attribution:
     def doubt(self) -> float:
         """The nominal model's probability but for its shares of `LAPSE`, which are large where hypotheses are few."""
         return self.beyond_lapse(self.nominal)
+
+    def doubt_within(self, rough: float) -> float:
+        """Return the doubt if the evidence of the nominal model were as much more than it is measured.
+
+        Parameters
+        ----------
+        rough
+            By how much ln of a likelihood may be off.
+        """
+        held = max(self.doubt, 0.0)
+        rest = 1.0 - LAPSE - held
+        return (1.0 - LAPSE) * held / (held + rest * exp(-rough))
 
     def beyond_lapse(self, contender: Contender) -> float:
         """Return a contender's probability but for its share of `LAPSE`.

@@ -15,7 +15,8 @@ from .result import Verdict
 
 __all__ = ["judge", "refused", "ties"]
 
-# Where noise may explain it all, an effect is named only where that is less probable than this.
+# Where noise may explain it all, an effect is named only where that is less probable than this, with tracks also by an
+# evidence that is off by `ROUGH`.
 _LEAST_DOUBT = 0.05
 # Evidence or likelihoods less than this factor apart, ln 20; and that of tracks by `ROUGH` more.
 _TIED = 3.0
@@ -37,7 +38,7 @@ def judge(comparison: Comparison, attribution: Attribution, foretold: bool) -> t
     """
     nominal, best = attribution.nominal, attribution.contenders[0]
     # What is wide enough around the nominal model hides a gap: where another is likelier, against its noise too.
-    doubtful = attribution.doubt > _LEAST_DOUBT and is_right(comparison, nominal.residual)
+    doubtful = attribution.doubt_within(_rough(comparison)) > _LEAST_DOUBT and is_right(comparison, nominal.residual)
     # What counts as the nominal model may make it more probable than what evidence ranks first.
     likelier = attribution.doubt >= attribution.beyond_lapse(best)
     if attribution.nominal_is_right and (not best.names or doubtful or likelier):
@@ -102,7 +103,7 @@ def ties(
     weights = np.concatenate(
         [np.where(np.arange(floor.size) < floor.tracked, 1.0, comparison.alike) for floor in comparison.floors]
     )
-    limit = _TIED + (ROUGH if any(floor.tracked for floor in comparison.floors) else 0.0)
+    limit = _TIED + _rough(comparison)
     known = {frozenset(contender.names): contender for contender in attribution.contenders}
     out: dict[str, list[str]] = {}
     for name in chosen.names:
@@ -126,6 +127,11 @@ def ties(
                 (instead,) = names - kept
                 out[name].append(instead)
     return {name: tuple(others) for name, others in out.items()}
+
+
+def _rough(comparison: Comparison) -> float:
+    """Return by how much ln of a likelihood may be off."""
+    return ROUGH if any(floor.tracked for floor in comparison.floors) else 0.0
 
 
 def _does_as_much(other: Contender, chosen: Contender, without: Contender) -> bool:
