@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from tumblers import InputError
+from tumblers.blind import score as score_module
 from tumblers.blind.answer import Answer, TrueCause, seal
 from tumblers.blind.forms import law_of
 from tumblers.blind.jitter import DIMENSIONS, NUMBERS, Jitter
@@ -131,6 +132,12 @@ def scored(tie_sigma: float = 0.5) -> Scores:
 
 def value(scores: Scores, words: str) -> float | None:
     return next(c.value for c in scores.criteria if c.words.startswith(words))
+
+
+def test_a_truth_in_a_form_that_is_not_known_is_refused(tmp_path: Path) -> None:
+    truth = answer("one", ("friction_coefficient", "wears_off", {"factor": 0.8}))
+    with pytest.raises(InputError, match=r"friction_coefficient\.form: found wears_off, expected catalogue or runs_in"):
+        score_module._tie_sigma(tmp_path, record(0, truth, said("explained", ("viscous_drag", {}))))
 
 
 def test_what_was_diagnosed_again_counts_for_time_and_sameness() -> None:

@@ -287,8 +287,9 @@ def _is_tie(record: Record, tie: TieCheck) -> bool:
 
 def _tie_sigma(folder: Path, record: Record) -> float:
     assert record.diagnosis is not None
+    # An answer of a form that is not known must not count as if there were no tie.
+    truth = [law_of(effect_of(e.name, e.parameters), e.form, e.form_seed) for e in record.answer.effects]
     try:
-        truth = [law_of(effect_of(e.name, e.parameters), e.form, e.form_seed) for e in record.answer.effects]
         chosen = [
             EffectLaw(effect_of(e["name"], {key: p["estimate"] for key, p in e["parameters"].items()}))
             for e in record.diagnosis["effects"]
