@@ -59,7 +59,7 @@ def test_a_likelier_effect_is_named_where_the_nominal_model_leaves_a_gap_against
 @pytest.mark.parametrize(
     ("ahead", "tracked", "verdict"),
     [
-        # Twenty to one is little where the evidence of tracks is known to e^3 alone; of outcomes it is known.
+        # Odds of e^5 are too few where the evidence of tracks is known to e^3 alone; that of outcomes is known.
         (5.0, COUNT, "no_gap"),
         (5.0, 0, "explained"),
         (7.0, COUNT, "explained"),

@@ -24,7 +24,7 @@ class TrueCause:
     parameters
         Its numbers; those of an effect bear the keys of ``[[effect]]``.
     strength_sigma
-        Its strength, of two that of each beside the other, in standard deviations of the noise.
+        Its strength alone, in standard deviations of the noise.
     """
 
     name: str

@@ -74,14 +74,6 @@ class _World:
         except (ArithmeticError, InputError):
             return None
 
-    def beside(self, laws: Sequence[Law], others: Sequence[Law]) -> float:
-        """Return how much laws show where others are at work, not at all where the world does not stand them."""
-        try:
-            both, bare = self.scenes([*laws, *others]), self.scenes(others)
-            return strength(self.lab, both, bare, self.moved).sigma
-        except (ArithmeticError, InputError):
-            return 0.0
-
     def repeats(self, laws: Sequence[Law]) -> bool:
         """Return whether the world with its causes hardly depends on its step: a lab shows what it sees again."""
         try:
@@ -203,18 +195,12 @@ def _sizes(
                     break
         if not found or (kind != "one" and max(s.sigma for s in found) < _CLEAR):
             # A first that hardly shows is no pair.
-            if not found or len(sized) + 1 < len(names):
-                return None
-            sized.append(max(found, key=lambda s: s.sigma))
-        else:
-            sized.append(min(found, key=lambda s: abs(log(s.sigma / target))))
-    if len(sized) < 2:
-        return sized
-    # What shows alone may have no part in the motion that another makes: nothing tells that it is there.
-    first, second = sized
-    return [
-        replace(one, sigma=world.beside([one.law], [other.law])) for one, other in ((first, second), (second, first))
-    ]
+            last = len(sized) + 1 == len(names)
+            return [*sized, max(found, key=lambda s: s.sigma)] if found and last else None
+        sized.append(min(found, key=lambda s: abs(log(s.sigma / target))))
+    if len(sized) > 1 and world.strength([s.law for s in sized]) is None:
+        return None
+    return sized
 
 
 def _size(world: _World, cause: Cause, target: float) -> _Sized | None:

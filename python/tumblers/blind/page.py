@@ -37,8 +37,7 @@ def page_of(scores: Scores) -> str:
         "tumblers blind score DIR --answers DIR/answers.json --page blind-results.md\n```",
         "The strength of a cause is the root mean square of what it changes in all numbers that were observed, in "
         "standard deviations of their noise, after the sensor's stated tolerances (origin, clock, heading, scale) and "
-        "a standard deviation of each nominal number have taken what they can; of two causes what each changes where "
-        "the other is at work.",
+        "a standard deviation of each nominal number have taken what they can.",
         _jitter(),
         "Easier than a lab's data in these ways: a lab drops a trial in which the nominal numbers' being off and the "
         f"world's own step alone show by more than {STEADY_SIGMA:g} sigma; it is drawn again where they would move "
@@ -46,12 +45,12 @@ def page_of(scores: Scores) -> str:
         f"than {QUIET_TRIAL_SIGMA:g}, so that the most sensitive motions near step-out and the friction angle are "
         "missing; causes whose motion depends on the world's own step by more than "
         f"{100.0 * REPEATS:.0f} % of what they change are drawn again in another lab, up to a dozen times, for a lab "
-        "shows what it sees again; a pair of effects of which one hardly shows beside the other in three labs is "
-        "drawn again. An effect counts as named first where it leads the effects of the diagnosis, whatever the "
-        "verdict; as truly tied where the diagnosis itself says that it cannot tell it from the first, and the first's "
-        "estimate shows with the lab's numbers what the truth, in its own form, shows with the world's, to "
-        f"{TIE_SIGMA:g} sigma, by simulation, after the sensor's tolerances and a standard deviation of each nominal "
-        "number have taken what they can of the difference, as they do of a cause's strength.",
+        "shows what it sees again; a pair of effects that does not show in three labs is drawn again. An effect counts "
+        "as named first where it leads the effects of the diagnosis, whatever the verdict; as truly tied where the "
+        "diagnosis itself says that it cannot tell it from the first, and the first's estimate shows with the lab's "
+        f"numbers what the truth, in its own form, shows with the world's, to {TIE_SIGMA:g} sigma, by simulation, "
+        "after the sensor's tolerances and a standard deviation of each nominal number have taken what they can of the "
+        "difference, as they do of a cause's strength.",
         "## What has to hold",
         _table(
             ("", "found", "wanted", "of", "met"),
