@@ -8,7 +8,6 @@ from typing import Any
 import pytest
 
 from tumblers import InputError
-from tumblers.blind import score as score_module
 from tumblers.blind.answer import Answer, TrueCause, seal
 from tumblers.blind.forms import law_of
 from tumblers.blind.jitter import DIMENSIONS, NUMBERS, Jitter
@@ -132,12 +131,6 @@ def scored(tie_sigma: float = 0.5) -> Scores:
 
 def value(scores: Scores, words: str) -> float | None:
     return next(c.value for c in scores.criteria if c.words.startswith(words))
-
-
-def test_a_truth_in_a_form_that_is_not_known_is_refused(tmp_path: Path) -> None:
-    truth = answer("one", ("friction_coefficient", "wears_off", {"factor": 0.8}))
-    with pytest.raises(InputError, match=r"friction_coefficient\.form: found wears_off, expected catalogue or runs_in"):
-        score_module._tie_sigma(tmp_path, record(0, truth, said("explained", ("viscous_drag", {}))))
 
 
 def test_what_was_diagnosed_again_counts_for_time_and_sameness() -> None:
@@ -274,6 +267,30 @@ def test_files_are_refused_in_one_line(file: str, text: str, found: str, tmp_pat
         read_records(tmp_path, answers)
     assert "\n" not in str(refused.value)
     assert refused.value.file is not None
+
+
+@pytest.mark.parametrize(
+    ("cause", "found"),
+    [
+        (("friction_coefficient", "wears_off", {"factor": 0.8}), r"friction_coefficient\.form: found 'wears_off'"),
+        (("friction_coefficient", "catalogue", {"factor": -0.8}), r"friction_coefficient\.factor: found -0\.8"),
+        (("friction_coefficient", "catalogue", {"factor": [0.8]}), r"friction_coefficient\.factor: found \[0\.8\]"),
+        (("static_friction", "catalogue", {}), "static_friction"),
+    ],
+)
+def test_a_cause_that_cannot_be_at_work_again_is_refused(
+    cause: tuple[str, str, dict[str, Any]], found: str, tmp_path: Path
+) -> None:
+    answers = write(tmp_path, answer("two", FRICTION, cause))
+    with pytest.raises(InputError, match=rf"answers\.json: dataset-000\..*{found}") as refused:
+        read_records(tmp_path, answers)
+    assert "\n" not in str(refused.value)
+
+
+def test_the_forms_that_are_known_are_named(tmp_path: Path) -> None:
+    answers = write(tmp_path, answer("one", ("friction_coefficient", "wears_off", {"factor": 0.8})))
+    with pytest.raises(InputError, match="expected catalogue or runs_in or drifts_with_time"):
+        read_records(tmp_path, answers)
 
 
 def test_explanations_that_foretell_the_same_do_not_differ() -> None:

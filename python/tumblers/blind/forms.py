@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ..check import Vector
 from ..effects.base import Effect
-from ..errors import InputError
+from ..errors import InputError, show
 from ..field import RotatingField, TableField
 from ..scenario import Scenario
 from .law import EffectLaw, Law, State
@@ -346,8 +346,8 @@ def law_of(effect: Effect, form: str, form_seed: int | None) -> Law:
     """
     if form == "catalogue":
         return EffectLaw(effect)
-    name, other = FORMS.get(effect.name, ("", None))
-    made = other if name == form else _PAST.get((effect.name, form))
-    if made is None:
-        raise InputError(f"{effect.name}.form", form, f"catalogue or {name}" if name else "catalogue")
-    return made(effect, np.random.default_rng(form_seed))
+    known = dict([FORMS[effect.name]] if effect.name in FORMS else [])
+    known |= {past: law for (name, past), law in _PAST.items() if name == effect.name}
+    if form not in known:
+        raise InputError(f"{effect.name}.form", show(form), " or ".join(["catalogue", *known]))
+    return known[form](effect, np.random.default_rng(form_seed))

@@ -12,9 +12,11 @@ from typing import Any
 from ..diagnosis.diagnosis import FORMAT
 from ..errors import InputError, show, unreadable
 from .answer import Answer, seal
+from .forms import law_of
 from .make import ANSWERS_FORMAT, SEAL, SEAL_FORMAT
 from .repeat import REPEAT_FORMAT
 from .run import DIAGNOSIS, RECORD, RECORD_FORMAT, REPEAT
+from .ties import effect_of
 
 __all__ = ["Record", "read_records"]
 
@@ -83,7 +85,8 @@ def read_records(directory: str | PathLike[str], answers: str | PathLike[str]) -
     Raises
     ------
     InputError
-        A file that is no such file, a dataset without an answer or a seal, or an answer that is not the sealed one.
+        A file that is no such file, a dataset without an answer or a seal, an answer that is not the sealed one, or
+        a cause in a form that is not known.
     """
     directory, answers = Path(directory), Path(answers)
     table = _json(answers, ANSWERS_FORMAT)
@@ -113,6 +116,12 @@ def _record(folder: Path, salt: object, answer: object, answers: Path) -> Record
         raise InputError(folder.name, "an answer that is not the sealed one", f"that of {folder / SEAL}", answers)
     try:
         truth = Answer.from_table(answer)
+        if truth.kind != "outside":
+            # What cannot be at work again would count as tied with nothing.
+            for cause in truth.effects:
+                law_of(effect_of(cause.name, cause.parameters), cause.form, cause.form_seed)
+    except InputError as error:
+        raise InputError(f"{folder.name}.{error.key}", error.found, error.expected, answers) from None
     except (AttributeError, KeyError, OverflowError, TypeError, ValueError):
         raise InputError(folder.name, show(answer), "an answer of this version", answers) from None
     diagnosis = _json(folder / DIAGNOSIS, FORMAT) if (folder / DIAGNOSIS).exists() else None

@@ -287,7 +287,6 @@ def _is_tie(record: Record, tie: TieCheck) -> bool:
 
 def _tie_sigma(folder: Path, record: Record) -> float:
     assert record.diagnosis is not None
-    # An answer of a form that is not known must not count as if there were no tie.
     truth = [law_of(effect_of(e.name, e.parameters), e.form, e.form_seed) for e in record.answer.effects]
     try:
         chosen = [

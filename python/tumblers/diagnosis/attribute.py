@@ -40,7 +40,7 @@ from .predictive import is_right
 from .search import Search
 from .tolerated import is_tolerated, tolerated
 
-__all__ = ["LAPSE", "PRIOR", "REFUSED", "ROUGH", "SIDE", "Attribution", "attribute", "seen_from_the_best"]
+__all__ = ["LAPSE", "PRIOR", "REFUSED", "SIDE", "Attribution", "attribute", "seen_from_the_best"]
 
 Floats = NDArray[np.float64]
 
@@ -56,9 +56,8 @@ LAPSE = 0.12
 REFUSED = 0.02
 # Trial points of the last fit of the best, from where it is: intervals are no better than it.
 _LAST_POINTS = 12
-# Standard deviations to either end of a 90 % interval, and by how much ln of a likelihood moves within one where there
-# are tracks, with the point at which the noise is measured.
-SIDE, ROUGH = 1.645, 3.0
+# Standard deviations to either end of a 90 % interval.
+SIDE = 1.645
 # How much of a fit's Gaussian is looked at for a point that is within the nominal numbers' tolerances.
 _WITHIN = 0.9
 # Of equals the one that the catalogue lists first is preferred.
@@ -97,13 +96,14 @@ class Attribution:
         return self.beyond_lapse(self.nominal)
 
     def doubt_within(self, rough: float) -> float:
-        """Return the doubt if the evidence of the nominal model were as much more than it is measured.
+        """Return the doubt if the nominal model's evidence, and no other, were by so much more than what was measured.
 
         Parameters
         ----------
         rough
             By how much ln of a likelihood may be off.
         """
+        # Rounding may leave less than nothing of a probability that is all lapse.
         held = max(self.doubt, 0.0)
         rest = 1.0 - LAPSE - held
         return (1.0 - LAPSE) * held / (held + rest * exp(-rough))
@@ -234,7 +234,7 @@ def _may_be_tolerated(fitter: Fitter, fit: Fit, scenarios: Sequence[Scenario], d
         return False
     fitter.take_likeliest_noise(hypothesis.effects(fit.point))
     there = fitter.residuals(hypothesis, [nearest])[0]
-    return fitter.cost(there, nearest) - fitter.again(fit).cost <= (most + 2.0 * ROUGH) * dispersion
+    return fitter.cost(there, nearest) - fitter.again(fit).cost <= (most + 2.0 * fitter.comparison.rough) * dispersion
 
 
 def _seen(fitter: Fitter, contender: Contender, first: bool) -> Contender:

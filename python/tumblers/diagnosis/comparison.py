@@ -32,6 +32,8 @@ Floats = NDArray[np.float64]
 _ALIKE_S, _MOST_ALIKE = 0.16, 8.0
 # What a trial counts that the model cannot run at all, in sigmas.
 _NOT_RUN = 30.0
+# By how much ln of the likelihood of tracks moves within a 90 % interval with the point at which the noise is measured.
+_ROUGH = 3.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -222,6 +224,11 @@ class Comparison:
         intervals = [self.readers[i].observed.frame_interval_s for i in tracked]
         found = [min(max(_ALIKE_S / interval, 1.0), _MOST_ALIKE) if interval > 0.0 else 1.0 for interval in intervals]
         return float(np.average(found, weights=[max(self.sizes[i], 1) for i in tracked]))
+
+    @property
+    def rough(self) -> float:
+        """By how much ln of a likelihood may be off: not at all where there are outcomes alone."""
+        return _ROUGH if any(floor.tracked for floor in self.floors) else 0.0
 
     @property
     def weighed(self) -> tuple[float, ...]:

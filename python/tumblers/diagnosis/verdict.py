@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from .attribute import ROUGH, Attribution
+from .attribute import Attribution
 from .comparison import Comparison
 from .conclusion import OPEN
 from .contender import Contender
@@ -15,10 +15,10 @@ from .result import Verdict
 
 __all__ = ["judge", "refused", "ties"]
 
-# Where noise may explain it all, an effect is named only where that is less probable than this, with tracks also by an
-# evidence that is off by `ROUGH`.
+# Where noise may explain it all, there is a gap only where that is less probable than this, with tracks also by an
+# evidence that is off by as much as it may be.
 _LEAST_DOUBT = 0.05
-# Evidence or likelihoods less than this factor apart, ln 20; and that of tracks by `ROUGH` more.
+# Evidence or likelihoods less than this factor apart, ln 20; and that of tracks by `Comparison.rough` more.
 _TIED = 3.0
 # What adds less than this share of what an effect adds does not do the same: it goes an eighth of the way. A choice.
 _MUCH = 0.25
@@ -38,7 +38,7 @@ def judge(comparison: Comparison, attribution: Attribution, foretold: bool) -> t
     """
     nominal, best = attribution.nominal, attribution.contenders[0]
     # What is wide enough around the nominal model hides a gap: where another is likelier, against its noise too.
-    doubtful = attribution.doubt_within(_rough(comparison)) > _LEAST_DOUBT and is_right(comparison, nominal.residual)
+    doubtful = attribution.doubt_within(comparison.rough) > _LEAST_DOUBT and is_right(comparison, nominal.residual)
     # What counts as the nominal model may make it more probable than what evidence ranks first.
     likelier = attribution.doubt >= attribution.beyond_lapse(best)
     if attribution.nominal_is_right and (not best.names or doubtful or likelier):
@@ -103,7 +103,7 @@ def ties(
     weights = np.concatenate(
         [np.where(np.arange(floor.size) < floor.tracked, 1.0, comparison.alike) for floor in comparison.floors]
     )
-    limit = _TIED + _rough(comparison)
+    limit = _TIED + comparison.rough
     known = {frozenset(contender.names): contender for contender in attribution.contenders}
     out: dict[str, list[str]] = {}
     for name in chosen.names:
@@ -127,11 +127,6 @@ def ties(
                 (instead,) = names - kept
                 out[name].append(instead)
     return {name: tuple(others) for name, others in out.items()}
-
-
-def _rough(comparison: Comparison) -> float:
-    """Return by how much ln of a likelihood may be off."""
-    return ROUGH if any(floor.tracked for floor in comparison.floors) else 0.0
 
 
 def _does_as_much(other: Contender, chosen: Contender, without: Contender) -> bool:
