@@ -17,8 +17,10 @@ from tumblers import InputError, dataset
 from tumblers.blind import draw
 from tumblers.blind.answer import seal
 from tumblers.blind.commands import blind_app
-from tumblers.blind.jitter import DIMENSIONS, Jitter
+from tumblers.blind.forms import law_of
+from tumblers.blind.jitter import DIMENSIONS, NUMBERS, Jitter
 from tumblers.blind.lab import Plan
+from tumblers.blind.law import EffectLaw
 from tumblers.blind.layout import draw_lab, world_scenario
 from tumblers.blind.make import make
 from tumblers.blind.records import read_records
@@ -26,7 +28,7 @@ from tumblers.blind.repeat import REPEAT_FORMAT
 from tumblers.blind.schedule import task
 from tumblers.blind.strength import Strength, strength
 from tumblers.blind.world import Scene, watch
-from tumblers.effects.catalogue import CATALOGUE
+from tumblers.effects.catalogue import CATALOGUE, get
 from tumblers.field import StaticField
 from tumblers.presets import drive
 
@@ -262,11 +264,81 @@ def test_a_lab_whose_numbers_cannot_be_moved_is_drawn_again(monkeypatch: pytest.
 def test_a_pair_whose_first_effect_hardly_shows_is_none(
     shown: tuple[float, float], count: int | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    sized = sized_pair(shown, [7.0, 5.0], monkeypatch)
+    assert (None if sized is None else len(sized)) == count
+
+
+@pytest.mark.parametrize(
+    ("beside", "weakest"), [([7.0, 5.0], 5.0), ([12.0, 20.0], 9.0), ([1.1, 7.0], 1.1), ([7.0, 0.9], None)]
+)
+def test_a_pair_is_as_strong_as_the_less_that_either_shows_alone_or_beside_the_other(
+    beside: list[float], weakest: float | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sized = sized_pair((10.0, 9.0), beside, monkeypatch)
+    assert (None if sized is None else draw._weakest(sized)) == weakest
+    # What is written down is the strength alone.
+    assert sized is None or [one.sigma for one in sized] == [10.0, 9.0]
+
+
+def sized_pair(
+    alone: tuple[float, float], beside: list[float], monkeypatch: pytest.MonkeyPatch
+) -> list[draw._Sized] | None:
+    """Return two causes that show so much, each alone and beside the other."""
     names = ("viscous_drag", "size_error")
-    by_name = dict(zip(names, shown, strict=True))
+    by_name = dict(zip(names, alone, strict=True))
     monkeypatch.setattr(draw, "_size", lambda _world, cause, _target: draw._Sized(cause, 1.0, by_name[cause.name]))
     rng = np.random.default_rng(0)
     lab, _ = draw_lab(rng)
-    world = SimpleNamespace(lab=lab, strength=lambda _laws: True)
-    sized = draw._sizes(world, "two", names, (False, False), 9.0, rng)  # type: ignore[arg-type]
-    assert (None if sized is None else len(sized)) == count
+    world = SimpleNamespace(lab=lab, beside=lambda laws: beside if len(laws) == 2 else None)
+    return draw._sizes(world, "two", names, (False, False), 9.0, rng)  # type: ignore[arg-type]
+
+
+def test_beside_what_does_nothing_a_cause_shows_as_much_as_alone() -> None:
+    world = draw._draw_world(np.random.default_rng(3))
+    assert world is not None
+    drag = EffectLaw(get("viscous_drag").from_vector([2e-2]))
+    nothing = EffectLaw(get("magnetization_strength").from_vector([1.0]))
+    alone = world.strength([drag])
+    assert alone is not None
+    assert alone.sigma > 1.0
+    assert world.beside([drag, nothing]) == [alone.sigma, 0.0]
+    assert world.beside([nothing, drag]) == [0.0, alone.sigma]
+
+
+def test_what_an_error_of_a_number_does_beside_another_cause_is_not_what_a_cause_shows() -> None:
+    world = draw._draw_world(np.random.default_rng(3))
+    assert world is not None
+    drag = EffectLaw(get("viscous_drag").from_vector([2e-2]))
+    # As much as a standard deviation of the nominal number, which is taken out of what a cause shows.
+    stronger = EffectLaw(get("magnetization_strength").from_vector([1.0 + NUMBERS]))
+    with_nothing_taken_out = strength(world.lab, world.scenes([drag, stronger]), world.scenes([drag])).sigma
+    assert with_nothing_taken_out > 1e-2
+    # What rounding leaves where a motion is steep.
+    assert world.beside([drag, stronger])[1] < 1e-4 * with_nothing_taken_out
+
+
+def test_laws_stay_in_their_order_beside_each_other() -> None:
+    """A coil's roll-off finds no rotating field where another law has made a table of it."""
+    world = draw._draw_world(np.random.default_rng(3))
+    assert world is not None
+    distorted = law_of(get("field_ellipticity").from_vector([0.9, 5.0]), "third_harmonic", 3)
+    slow = EffectLaw(get("field_rolloff").from_vector([5e-3]))
+    last, first = world.beside([distorted, slow]), world.beside([slow, distorted])
+    assert last[1] == 0.0
+    assert min(last[0], *first) > 0.1
+
+
+def test_another_step_is_no_excuse_for_numbers_that_are_off(monkeypatch: pytest.MonkeyPatch) -> None:
+    world = draw._draw_world(np.random.default_rng(3))
+    assert world is not None
+    scenes, weaker = draw._World.scenes, replace(world.jitter, field=0.5 * world.jitter.field)
+
+    def another(self: draw._World, *rest: Any, finer: float = 1.0) -> list[Scene]:
+        # In a finer step the world does what another number would.
+        return scenes(replace(self, jitter=weaker) if finer < 1.0 else self, *rest)
+
+    open_ = replace(world, moved=(tuple(replace(world, jitter=weaker).scenes([])),))
+    assert strength(world.lab, open_.moved[0], world.plain).sigma > draw.QUIET_SIGMA
+    assert open_.repeats([])
+    monkeypatch.setattr(draw._World, "scenes", another)
+    assert not open_.repeats([])

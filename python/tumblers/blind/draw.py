@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 from math import inf, log
 
 import numpy as np
@@ -29,6 +30,8 @@ __all__ = ["QUIET_SIGMA", "QUIET_TRIAL_SIGMA", "REPEATS", "draw_dataset"]
 _TARGETS = (0.7, 1.5, 3.0, 6.0, 12.0, 25.0)
 # Two effects, and causes outside the catalogue, are to be seen.
 _CLEAR_TARGETS, _CLEAR = (6.0, 12.0, 25.0), 4.5
+# Where one of two shows less than the noise beside the other, there is one cause.
+_LEAST_BESIDE = 1.0
 # A world without causes is one that its lab would call explained: what jitter shows stays below the noise.
 QUIET_SIGMA, QUIET_TRIAL_SIGMA = 0.7, 1.3
 # What one effect should reach even where its range does not allow the target.
@@ -74,12 +77,24 @@ class _World:
         except (ArithmeticError, InputError):
             return None
 
+    def beside(self, laws: Sequence[Law]) -> list[float]:
+        """Return how much each of two laws shows where the other is at work; nothing where one cannot."""
+        try:
+            both, shown = self.scenes(laws), []
+            for other in reversed(laws):
+                moved = [replace(self, jitter=raised).scenes([other]) for raised in self.jitter.each_raised()]
+                shown.append(strength(self.lab, both, self.scenes([other]), moved).sigma)
+        except (ArithmeticError, InputError):
+            return [0.0 for _ in laws]
+        return shown
+
     def repeats(self, laws: Sequence[Law]) -> bool:
         """Return whether the world with its causes hardly depends on its step: a lab shows what it sees again."""
         try:
             scenes = self.scenes(laws)
             shown, stepped = strength(self.lab, scenes, self.plain, self.moved), self.scenes(laws, finer=_FINER)
-            change = strength(self.lab, stepped, scenes, self.moved)
+            # With the same numbers: what they may be off is no excuse.
+            change = strength(self.lab, stepped, scenes)
             return change.sigma <= max(QUIET_SIGMA, REPEATS * shown.sigma)
         except (ArithmeticError, InputError):
             return False
@@ -90,6 +105,8 @@ class _Sized:
     cause: Cause
     size: float
     sigma: float
+    # Of two the strength beside the other.
+    beside: float = inf
 
     @property
     def law(self) -> Law:
@@ -141,21 +158,22 @@ def _draw(about: Task, rng: np.random.Generator, index: int) -> tuple[Dataset, A
             continue
         found.append((world, sized))
         least = min(_SEEN, target) * (1.0 - _CLOSE) if about.kind == "one" else _CLEAR
-        if min((s.sigma for s in sized), default=inf) >= least:
+        if _weakest(sized) >= least:
             measured = _measured(about.kind, world, sized, rng, index)
             if measured is not None:
                 return measured
             found.pop()
     # None is as strong as it should be: the strongest has to do.
-    for world, sized in [*sorted(found, key=_weakest, reverse=True), *sorted(fleeting, key=_weakest, reverse=True)]:
+    strongest = [sorted(those, key=lambda one: _weakest(one[1]), reverse=True) for those in (found, fleeting)]
+    for world, sized in chain.from_iterable(strongest):
         measured = _measured(about.kind, world, sized, rng, index)
         if measured is not None:
             return measured
     return None
 
 
-def _weakest(pair: tuple[_World, list[_Sized]]) -> float:
-    return min((s.sigma for s in pair[1]), default=inf)
+def _weakest(sized: Sequence[_Sized]) -> float:
+    return min((min(s.sigma, s.beside) for s in sized), default=inf)
 
 
 def _draw_world(rng: np.random.Generator) -> _World | None:
@@ -193,14 +211,22 @@ def _sizes(
                 found.append(one)
                 if abs(log(one.sigma / target)) < 2.0 * _CLOSE:
                     break
-        if not found or (kind != "one" and max(s.sigma for s in found) < _CLEAR):
+        if not found:
+            return None
+        if kind == "one" or max(s.sigma for s in found) >= _CLEAR:
+            sized.append(min(found, key=lambda s: abs(log(s.sigma / target))))
+        elif len(sized) + 1 == len(names):
+            sized.append(max(found, key=lambda s: s.sigma))
+        else:
             # A first that hardly shows is no pair.
-            last = len(sized) + 1 == len(names)
-            return [*sized, max(found, key=lambda s: s.sigma)] if found and last else None
-        sized.append(min(found, key=lambda s: abs(log(s.sigma / target))))
-    if len(sized) > 1 and world.strength([s.law for s in sized]) is None:
+            return None
+    if len(sized) < 2:
+        return sized
+    # What shows alone may have no part in the motion that another makes: nothing would tell that it is there.
+    beside = world.beside([s.law for s in sized])
+    if min(beside) < _LEAST_BESIDE:
         return None
-    return sized
+    return [replace(s, beside=sigma) for s, sigma in zip(sized, beside, strict=True)]
 
 
 def _size(world: _World, cause: Cause, target: float) -> _Sized | None:

@@ -45,9 +45,10 @@ def page_of(scores: Scores) -> str:
         f"than {QUIET_TRIAL_SIGMA:g}, so that the most sensitive motions near step-out and the friction angle are "
         "missing; causes whose motion depends on the world's own step by more than "
         f"{100.0 * REPEATS:.0f} % of what they change are drawn again in another lab, up to a dozen times, for a lab "
-        "shows what it sees again; a pair of effects that does not show in three labs is drawn again. An effect counts "
-        "as named first where it leads the effects of the diagnosis, whatever the verdict; as truly tied where the "
-        "diagnosis itself says that it cannot tell it from the first, and the first's estimate shows with the lab's "
+        "shows what it sees again; so are two of which either shows less than the noise where the other is at work, "
+        "and after three labs another pair takes their place. An effect counts as named first where it leads the "
+        "effects of the diagnosis, whatever the verdict; as truly tied where the diagnosis itself says that it cannot "
+        "tell it from the first, and the first's estimate shows with the lab's "
         f"numbers what the truth, in its own form, shows with the world's, to {TIE_SIGMA:g} sigma, by simulation, "
         "after the sensor's tolerances and a standard deviation of each nominal number have taken what they can of the "
         "difference, as they do of a cause's strength.",
