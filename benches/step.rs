@@ -31,7 +31,7 @@ fn by_contact_mode(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// A whole run of 2000 steps, transitions included.
+/// A whole run of 2000 steps, transitions included, verified and as rollouts have it.
 fn whole_runs(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("run of 2000 steps");
     let trials = [
@@ -41,15 +41,17 @@ fn whole_runs(criterion: &mut Criterion) {
     ];
     for (name, trial) in &trials {
         eprintln!("{name}: {:.3} Newton iterations a step", iterations_per_step(trial));
-        group.bench_function(*name, |bencher| {
-            bencher.iter(|| {
-                let mut stepper = Stepper::new(trial, SolverKind::Reduced);
-                for _ in 0..trial.steps() {
-                    stepper.advance();
-                }
-                stepper.state().position.y
+        for (kind, how) in [(SolverKind::Reduced, "verified"), (SolverKind::Unverified, "unverified")] {
+            group.bench_function(format!("{name}, {how}"), |bencher| {
+                bencher.iter(|| {
+                    let mut stepper = Stepper::new(trial, kind);
+                    for _ in 0..trial.steps() {
+                        stepper.advance();
+                    }
+                    stepper.state().position.y
+                });
             });
-        });
+        }
     }
     group.finish();
 }

@@ -56,7 +56,7 @@ pub fn sweep(
             gauge.read(stepper, trial.step());
             Ok(())
         };
-        match run(trial, control, read) {
+        match run(trial, SolverKind::Reduced, control, read) {
             Ok(()) => Ok(gauge.metrics()),
             Err(Ended::Diverged(diverged)) => Err(Outcome::Failed(diverged.to_string())),
             Err(Ended::Stopped) => Err(Outcome::Stopped),
@@ -65,7 +65,7 @@ pub fn sweep(
 }
 
 /// Runs `trials` on `threads` threads (0: one a core) and keeps every `every[i]`-th pose of the trial `i`, to the last that is
-/// finite.
+/// finite. The steps are not verified ([`SolverKind::Unverified`]).
 pub fn rollouts(
     trials: &[Trial],
     every: &[u64],
@@ -76,9 +76,9 @@ pub fn rollouts(
     each(trials, threads, control, |trial, i| {
         let every = every.get(i).copied().unwrap_or(1).max(1);
         let mut rollout = Rollout::with_rows(trial.steps() / every + 2);
-        rollout.push(trial, &Stepper::new(trial, SolverKind::Reduced));
+        rollout.push(trial, &Stepper::new(trial, SolverKind::Unverified));
         let mut done = 0;
-        let ended = run(trial, control, |stepper| {
+        let ended = run(trial, SolverKind::Unverified, control, |stepper| {
             done += 1;
             rollout.unconverged_steps += u64::from(!stepper.solution().converged);
             if until == Until::Unresolved && !stepper.is_resolved() {
@@ -121,8 +121,13 @@ fn each<T: Send>(
 }
 
 /// Runs `trial` to its end or to that of `watch`, which sees every step.
-fn run(trial: &Trial, control: &Control, mut watch: impl FnMut(&Stepper) -> Result<(), Ended>) -> Result<(), Ended> {
-    let mut stepper = Stepper::new(trial, SolverKind::Reduced);
+fn run(
+    trial: &Trial,
+    kind: SolverKind,
+    control: &Control,
+    mut watch: impl FnMut(&Stepper) -> Result<(), Ended>,
+) -> Result<(), Ended> {
+    let mut stepper = Stepper::new(trial, kind);
     for done in 0..trial.steps() {
         if done % STEPS_BETWEEN_LOOKS == 0 && control.stop.load(Ordering::Relaxed) {
             return Err(Ended::Stopped);

@@ -17,9 +17,9 @@ pub struct StepSolution {
     pub ecp_substrate: Vec3,
     /// `p_t`, `p_o` (N s) and `p_r` (N m s).
     pub friction: Vec3,
-    /// `l_1..l_m`.
+    /// `l_1..l_m`, NaN of a step that was not verified.
     pub multipliers: Vec<f64>,
-    /// `l_{m+1}`.
+    /// `l_{m+1}`, NaN of a step that was not verified.
     pub plane_multiplier: f64,
     /// `σ`.
     pub sigma: f64,
@@ -33,13 +33,13 @@ pub struct StepSolution {
     pub support: Support,
     /// How much of the real body that is.
     pub patch: Patch,
-    /// The scaled natural residual of the unreduced problem.
+    /// The scaled natural residual of the unreduced problem, NaN of a step that was not verified.
     pub residual: f64,
     /// How far the body's lowest point is below the plane, m.
     pub penetration: f64,
     /// Newton iterations, over all supports that were tried.
     pub iterations: u32,
-    /// Whether the residual is small enough and the turn resolved.
+    /// Whether the residual is small enough, or the reduced problem's where the step was not verified, and the turn resolved.
     pub converged: bool,
 }
 
@@ -69,6 +69,13 @@ impl StepSolution {
 }
 
 impl StepSolution {
+    /// Takes the numbers of the unreduced problem alone from a step that was not held against it.
+    pub fn leave_unverified(&mut self) {
+        self.multipliers.fill(f64::NAN);
+        self.plane_multiplier = f64::NAN;
+        self.residual = f64::NAN;
+    }
+
     /// `∇f_i(a1)` of every surface after a step of length `h` that began in `state`, in the substrate frame.
     pub fn gradients(&self, body: &Body, state: &State, h: f64) -> Vec<Vec3> {
         let rotation = matrix(&advance(&state.orientation, &self.angular, h));

@@ -12,6 +12,7 @@ mod found;
 mod invariants;
 mod random;
 mod shape;
+mod unverified;
 
 use case::{Case, TAME};
 use invariants::{Came, Watch};
