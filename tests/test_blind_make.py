@@ -25,7 +25,7 @@ from tumblers.blind.layout import draw_lab, world_scenario
 from tumblers.blind.make import make
 from tumblers.blind.records import read_records
 from tumblers.blind.repeat import REPEAT_FORMAT
-from tumblers.blind.schedule import task
+from tumblers.blind.schedule import Task, task
 from tumblers.blind.strength import Strength, strength
 from tumblers.blind.world import Scene, watch
 from tumblers.effects.catalogue import CATALOGUE, get
@@ -268,6 +268,38 @@ def test_a_pair_whose_first_effect_hardly_shows_is_none(
     assert (None if sized is None else len(sized)) == count
 
 
+def test_a_pair_that_shows_clearly_beside_each_other_is_taken_before_one_that_does_not(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    shown = iter([(9.0, 2.0), (3.0, 9.0), None, (5.0, 9.0), (9.0, 9.0)])
+
+    def sizes(*_rest: Any) -> list[draw._Sized] | None:
+        beside = next(shown)
+        return None if beside is None else [draw._Sized(None, 1.0, 9.0, sigma) for sigma in beside]  # type: ignore[arg-type]
+
+    monkeypatch.setattr(draw, "_draw_world", lambda _rng: SimpleNamespace(repeats=lambda _laws: True))
+    monkeypatch.setattr(draw, "_sizes", sizes)
+    monkeypatch.setattr(draw._Sized, "law", None)
+    monkeypatch.setattr(draw, "_measured", lambda _kind, _world, sized, *_rest: [one.beside for one in sized])
+    about = Task(kind="two", names=("viscous_drag", "size_error"))
+    assert draw._draw(about, np.random.default_rng(0), 0) == [5.0, 9.0]
+    # None is clear: the strongest of what there is.
+    shown = iter([(9.0, 2.0), (3.0, 9.0), *[None] * 10])
+    assert draw._draw(about, np.random.default_rng(0), 0) == [3.0, 9.0]
+
+
+def test_two_causes_that_cannot_be_at_work_together_show_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    world = draw._draw_world(np.random.default_rng(3))
+    assert world is not None
+
+    def diverges(*_rest: Any) -> list[Scene]:
+        raise ArithmeticError("diverged")
+
+    monkeypatch.setattr(draw._World, "scenes", diverges)
+    drag = EffectLaw(get("viscous_drag").from_vector([2e-2]))
+    assert world.beside([drag, drag]) == [0.0, 0.0]
+
+
 @pytest.mark.parametrize(
     ("beside", "weakest"), [([7.0, 5.0], 5.0), ([12.0, 20.0], 9.0), ([1.1, 7.0], 1.1), ([7.0, 0.9], None)]
 )
@@ -289,7 +321,7 @@ def sized_pair(
     monkeypatch.setattr(draw, "_size", lambda _world, cause, _target: draw._Sized(cause, 1.0, by_name[cause.name]))
     rng = np.random.default_rng(0)
     lab, _ = draw_lab(rng)
-    world = SimpleNamespace(lab=lab, beside=lambda laws: beside if len(laws) == 2 else None)
+    world = SimpleNamespace(lab=lab, beside=lambda _laws: beside)
     return draw._sizes(world, "two", names, (False, False), 9.0, rng)  # type: ignore[arg-type]
 
 

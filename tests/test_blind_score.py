@@ -275,20 +275,46 @@ def test_files_are_refused_in_one_line(file: str, text: str, found: str, tmp_pat
         (("friction_coefficient", "wears_off", {"factor": 0.8}), r"friction_coefficient\.form: found 'wears_off'"),
         (("friction_coefficient", "catalogue", {"factor": -0.8}), r"friction_coefficient\.factor: found -0\.8"),
         (("friction_coefficient", "catalogue", {"factor": [0.8]}), r"friction_coefficient\.factor: found \[0\.8\]"),
+        (
+            ("friction_coefficient", "catalogue", {"factr": 0.8}),
+            r"friction_coefficient\.'factr': found no such parameter",
+        ),
+        (("friction_coefficient", "runs_in", {"factor": 0.8}), "form_seed: found None, expected a whole number"),
         (("static_friction", "catalogue", {}), "static_friction"),
     ],
 )
 def test_a_cause_that_cannot_be_at_work_again_is_refused(
     cause: tuple[str, str, dict[str, Any]], found: str, tmp_path: Path
 ) -> None:
-    answers = write(tmp_path, answer("two", FRICTION, cause))
-    with pytest.raises(InputError, match=rf"answers\.json: dataset-000\..*{found}") as refused:
+    answers = write(tmp_path, answer("two", ("viscous_drag", "catalogue", {"viscosity_Pa_s": 1e-3}), cause))
+    with pytest.raises(InputError, match=rf"answers\.json: dataset-000\.effects\[1\]\..*{found}") as refused:
         read_records(tmp_path, answers)
     assert "\n" not in str(refused.value)
 
 
+@pytest.mark.parametrize(
+    ("truth", "found"),
+    [
+        (("twoo", FRICTION), r"kind: found 'twoo', expected none or one or two or outside"),
+        (("one",), "effects: found 0 of 0 names, expected 1"),
+        (("none", FRICTION), "effects: found 1 of 1 names, expected 0"),
+        (("two", FRICTION, FRICTION), "effects: found 2 of 1 names, expected 2"),
+    ],
+)
+def test_causes_are_as_many_as_the_kind_says(truth: Any, found: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=rf"answers\.json: dataset-000\.{found}"):
+        read_records(tmp_path, write(tmp_path, answer(*truth)))
+
+
+def test_a_cause_outside_the_catalogue_has_its_own_numbers(tmp_path: Path) -> None:
+    truth = answer("outside", ("sticky_spot", "outside", {"place_m": [0.1, 0.2]}))
+    assert read_records(tmp_path, write(tmp_path, truth))[1][0].answer.kind == "outside"
+
+
 def test_the_forms_that_are_known_are_named(tmp_path: Path) -> None:
-    answers = write(tmp_path, answer("one", ("friction_coefficient", "wears_off", {"factor": 0.8})))
+    truth = answer("one", ("friction_coefficient", "wears_off", {"factor": 0.8}))
+    truth = replace(truth, effects=(replace(truth.effects[0], form_seed=3),))
+    answers = write(tmp_path, truth)
     with pytest.raises(InputError, match="expected catalogue or runs_in or drifts_with_time"):
         read_records(tmp_path, answers)
 

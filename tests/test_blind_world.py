@@ -176,9 +176,9 @@ def test_an_answer_with_a_form_that_is_drawn_no_more_keeps_its_law_and_one_that_
     assert isinstance(drifts, FrictionDrift)
     assert drifts.scale(0.5, {}) == pytest.approx(1.0)
     assert type(law_of(friction, "catalogue", None)) is EffectLaw
-    with pytest.raises(InputError, match=r"friction_coefficient\.form: found barrel, expected catalogue or runs_in"):
+    with pytest.raises(InputError, match=r"friction_coefficient\.form: found 'barrel', expected catalogue or runs_in"):
         law_of(friction, "barrel", 3)
-    with pytest.raises(InputError, match=r"draft_angle\.form: found barrel, expected catalogue"):
+    with pytest.raises(InputError, match=r"draft_angle\.form: found 'barrel', expected catalogue"):
         law_of(CATALOGUE["draft_angle"].from_vector([1.0]), "barrel", 3)
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tumblers.diagnosis.attribute import _with_tolerated
+from tumblers.diagnosis.attribute import _may_be_tolerated, _with_tolerated
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.contender import of_fit, of_nominal
 from tumblers.diagnosis.fitter import Fitter
@@ -80,6 +80,22 @@ def test_what_may_be_within_a_tolerance_is_the_nominal_model(
         assert second.probability == 0.0
     else:
         assert (first, second.probability) == (effect, 0.1)
+
+
+@pytest.mark.parametrize(("rough", "tolerated"), [(3.0, True), (0.0, False)])
+def test_a_point_within_tolerance_may_be_worse_by_what_evidence_may_be_off(
+    rough: float, tolerated: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fitter = coarse_lab()
+    scenarios = [fitter.comparison.simulator.nominal(i) for i in fitter.trials]
+    hypothesis = Hypothesis.of(MagnetizationStrength, scenarios)
+    beyond = (np.array(MagnetizationStrength.to_fit((1.0 + 1.2 * MOMENT,))) - hypothesis.neutral) / hypothesis.scale
+    fit = replace(fitter.fit(hypothesis, beyond, evaluations=1), point=beyond, jacobian=np.full((1, 1), 1e-3))
+    monkeypatch.setattr(Comparison, "rough", rough)
+    # At the end of the tolerance the objective is 6 higher, where 90 % of a Gaussian are within 2.7.
+    monkeypatch.setattr(fitter, "again", lambda fit: replace(fit, cost=0.0))
+    monkeypatch.setattr(fitter, "cost", lambda *_rest: 6.0)
+    assert _may_be_tolerated(fitter, fit, scenarios, 1.0) == tolerated
 
 
 @pytest.mark.parametrize(("deviation", "tolerated"), [(0.02, True), (2e-3, False)])

@@ -66,7 +66,7 @@ def test_a_likelier_effect_is_named_where_the_nominal_model_leaves_a_gap_against
     assert (found, chosen) == (verdict, nominal if verdict == "no_gap" else best)
 
 
-# The nominal model has 5 % where another has ln 17.6 = 2.87 more, 2.81 of what all share aside.
+# The nominal model has 5 % of 88 % where another has e^2.81 = 16.6 times as much.
 @pytest.mark.parametrize(
     ("ahead", "tracked", "foretold", "verdict"),
     [

@@ -65,20 +65,21 @@ pub fn sweep(
 }
 
 /// Runs `trials` on `threads` threads (0: one a core) and keeps every `every[i]`-th pose of the trial `i`, to the last that is
-/// finite. The steps are not verified ([`SolverKind::Unverified`]).
+/// finite.
 pub fn rollouts(
     trials: &[Trial],
     every: &[u64],
     until: Until,
+    kind: SolverKind,
     threads: usize,
     control: &Control,
 ) -> Result<Vec<Outcome<Rollout>>, rayon::ThreadPoolBuildError> {
     each(trials, threads, control, |trial, i| {
         let every = every.get(i).copied().unwrap_or(1).max(1);
         let mut rollout = Rollout::with_rows(trial.steps() / every + 2);
-        rollout.push(trial, &Stepper::new(trial, SolverKind::Unverified));
+        rollout.push(trial, &Stepper::new(trial, kind));
         let mut done = 0;
-        let ended = run(trial, SolverKind::Unverified, control, |stepper| {
+        let ended = run(trial, kind, control, |stepper| {
             done += 1;
             rollout.unconverged_steps += u64::from(!stepper.solution().converged);
             if until == Until::Unresolved && !stepper.is_resolved() {

@@ -54,7 +54,10 @@ impl Gauge {
         let (solution, state, time) = (stepper.solution(), stepper.state(), stepper.time());
         self.metrics.newton_iterations += u64::from(solution.iterations);
         self.metrics.unconverged_steps += u64::from(!solution.converged);
-        self.metrics.max_residual = self.metrics.max_residual.max(solution.residual);
+        // That of a run with a step that was not verified is no number.
+        let residuals = [self.metrics.max_residual, solution.residual];
+        self.metrics.max_residual =
+            if residuals.iter().any(|r| r.is_nan()) { f64::NAN } else { residuals[0].max(residuals[1]) };
         self.metrics.max_penetration = self.metrics.max_penetration.max(solution.penetration);
         self.metrics.speed = (state.position.y - self.start.y) / time;
         // A cycle that ends a rounding after the last step has ended.

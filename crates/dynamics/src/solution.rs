@@ -25,7 +25,7 @@ pub struct StepSolution {
     pub sigma: f64,
     /// `p_n`, N s.
     pub normal: f64,
-    /// `k`.
+    /// `k`, 0 of a step that was not verified.
     pub active: usize,
     /// `[W_t W_o W_r]ᵀV⁺`.
     pub slip: Vec3,
@@ -71,6 +71,7 @@ impl StepSolution {
 impl StepSolution {
     /// Takes the numbers of the unreduced problem alone from a step that was not held against it.
     pub fn leave_unverified(&mut self) {
+        self.active = 0;
         self.multipliers.fill(f64::NAN);
         self.plane_multiplier = f64::NAN;
         self.residual = f64::NAN;

@@ -20,8 +20,8 @@ const MOST_TURN: f64 = 2.0;
 pub enum SolverKind {
     /// The reduced problem, held against the unreduced one, and the general solver only where that fails.
     Reduced,
-    /// The reduced problem on its word, and the general solver where no support is right: for poses alone. To hold it
-    /// against the unreduced one takes a fifth to a third of a step's time. Residual and multipliers are NaN.
+    /// The reduced problem on its word where a support is right, and as `Reduced` where none is: for poses alone. The
+    /// multipliers and the residual of a step on its word are NaN.
     Unverified,
     /// The unreduced problem, by the general solver alone.
     General,
@@ -146,13 +146,13 @@ impl<'a> Stepper<'a> {
             self.warm.unknowns = onward;
         }
         let found = search(step, &self.warm);
-        accept(step, &found, &mut self.solution);
+        let lowest = accept(step, &found, &mut self.solution);
         self.warm.unknowns = found.at.unknowns;
         self.solution.converged = if found.right && self.kind == SolverKind::Unverified {
             self.solution.leave_unverified();
             true
         } else {
-            verify(step, &found, &mut self.rows, &mut self.solution)
+            verify(step, &found, &lowest, &mut self.rows, &mut self.solution)
         };
         if self.solution.converged {
             self.trail.follow(found.support, &found.at.unknowns);
@@ -171,8 +171,8 @@ impl<'a> Stepper<'a> {
             Warm { support: other.support, unknowns: Unknowns { angular: other.angular, ..Unknowns::at_rest() } };
         let found = search(step, &warm);
         let mut sharpened = other.clone();
-        accept(step, &found, &mut sharpened);
-        sharpened.converged = verify(step, &found, &mut self.rows, &mut sharpened);
+        let lowest = accept(step, &found, &mut sharpened);
+        sharpened.converged = verify(step, &found, &lowest, &mut self.rows, &mut sharpened);
         sharpened.iterations += other.iterations;
         // What the search left is the closest contact; only a solution may replace it.
         if let Some(solution) = [sharpened, other].into_iter().find(|candidate| candidate.converged) {
@@ -196,8 +196,18 @@ impl<'a> Stepper<'a> {
     }
 }
 
+/// What [`accept`] finds of the pose after the step.
+struct Lowest {
+    /// `-n` in the body frame.
+    down: Vec3,
+    /// The lowest generator.
+    generator: u16,
+    /// The arm of the ECP: that of the lowest generator where nothing touches.
+    arm: Vec3,
+}
+
 /// Every unknown of the unreduced problem from the reduced solution, but for the multipliers of the surfaces.
-fn accept(step: &Step, found: &Found, solution: &mut StepSolution) {
+fn accept(step: &Step, found: &Found, solution: &mut StepSolution) -> Lowest {
     let at = &found.at;
     let body = step.body;
     let travelled = step.state.position + at.linear * step.h;
@@ -206,8 +216,12 @@ fn accept(step: &Step, found: &Found, solution: &mut StepSolution) {
     solution.support = found.support;
     solution.iterations = found.iterations;
     let down = downward(&at.rotation);
-    let (lowest, lowest_point) = body.lowest(&down);
-    let arm = arm(step, found, lowest);
+    let (generator, lowest_point) = body.lowest(&down);
+    let arm = if found.support == Support::None && at.arm == Vec3::zeros() {
+        of_generator(body, generator, &at.rotation)
+    } else {
+        at.arm
+    };
     solution.ecp = travelled + arm;
     solution.ecp_substrate = Vec3::new(solution.ecp.x, solution.ecp.y, 0.0);
     if found.support == Support::None {
@@ -225,22 +239,13 @@ fn accept(step: &Step, found: &Found, solution: &mut StepSolution) {
     }
     let depth = solution.ecp_substrate.z - (travelled.z + (at.rotation * lowest_point).z);
     solution.penetration = depth.max(0.0);
-}
-
-/// The arm of the ECP; of a body that touches nothing, of its lowest generator.
-fn arm(step: &Step, found: &Found, lowest: u16) -> Vec3 {
-    let at = &found.at;
-    let hangs = found.support == Support::None && at.arm == Vec3::zeros();
-    if hangs { of_generator(step.body, lowest, &at.rotation) } else { at.arm }
+    Lowest { down, generator, arm }
 }
 
 /// Sets the multipliers of the surfaces and the residual, and returns whether both problems are solved.
-fn verify(step: &Step, found: &Found, rows: &mut Rows, solution: &mut StepSolution) -> bool {
-    let rotation = &found.at.rotation;
-    let down = downward(rotation);
-    let (lowest, _) = step.body.lowest(&down);
-    let cone_of = if found.support == Support::None { Support::Point(lowest) } else { found.support };
-    set_normal_cone(step.body, cone_of, &(rotation.transpose() * arm(step, found, lowest)), &down, solution);
+fn verify(step: &Step, found: &Found, lowest: &Lowest, rows: &mut Rows, solution: &mut StepSolution) -> bool {
+    let cone_of = if found.support == Support::None { Support::Point(lowest.generator) } else { found.support };
+    set_normal_cone(step.body, cone_of, &(found.at.rotation.transpose() * lowest.arm), &lowest.down, solution);
     solution.residual = rows.residual(step, solution);
     found.right && solution.residual <= REQUIRED
 }

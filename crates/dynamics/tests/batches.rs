@@ -65,7 +65,8 @@ fn pose_bits(position: &[[f64; 3]], orientation: &[[f64; 4]]) -> Vec<u64> {
 #[test]
 fn a_rollout_has_the_poses_of_a_recording() {
     let (trials, every) = walks();
-    let rollouts = walked(rollouts(&trials, &every, Until::End, 2, &Control::default()).unwrap());
+    let rollouts =
+        walked(rollouts(&trials, &every, Until::End, SolverKind::Unverified, 2, &Control::default()).unwrap());
     for ((trial, every), rollout) in trials.iter().zip(every).zip(rollouts) {
         let (recording, _) = record(trial, SolverKind::Reduced, every, |_| ControlFlow::Continue(())).unwrap();
         assert_eq!(rollout.time, recording.time);
@@ -82,7 +83,9 @@ fn a_rollout_has_the_poses_of_a_recording() {
 fn the_poses_do_not_depend_on_the_threads() {
     let (trials, every) = walks();
     let run = |threads| -> Vec<_> {
-        let rollouts = walked(rollouts(&trials, &every, Until::End, threads, &Control::default()).unwrap());
+        let rollouts = walked(
+            rollouts(&trials, &every, Until::End, SolverKind::Unverified, threads, &Control::default()).unwrap(),
+        );
         rollouts.iter().map(|rollout| pose_bits(&rollout.position, &rollout.orientation)).collect()
     };
     assert_eq!(run(1), run(4));
@@ -95,7 +98,8 @@ fn a_diverging_trial_leaves_what_was_finite() {
     parts.surroundings.times = std::sync::Arc::new([0.05]);
     parts.surroundings.wrenches = std::sync::Arc::new([(Vec3::new(0.0, 0.0, 1e305), Vec3::zeros())]);
     let trial = Trial::new(parts).unwrap();
-    let rollout = walked(rollouts(&[trial], &[1], Until::End, 1, &Control::default()).unwrap()).remove(0);
+    let rollout =
+        walked(rollouts(&[trial], &[1], Until::End, SolverKind::Unverified, 1, &Control::default()).unwrap()).remove(0);
     let rows = rollout.time.len();
     assert!((100..200).contains(&rows), "{rows} rows");
     assert!(rollout.position.iter().flatten().all(|x| x.is_finite()));
@@ -117,8 +121,13 @@ fn a_rollout_ends_where_a_step_does_not_show_the_spin() {
     });
     let rows = 1 + resolved.count();
     assert!((100..200).contains(&rows), "{rows} rows");
-    let seen =
-        |until| walked(rollouts(std::slice::from_ref(&trial), &[1], until, 1, &Control::default()).unwrap()).remove(0);
+    let seen = |until| {
+        walked(
+            rollouts(std::slice::from_ref(&trial), &[1], until, SolverKind::Unverified, 1, &Control::default())
+                .unwrap(),
+        )
+        .remove(0)
+    };
     let (whole, ended) = (seen(Until::End), seen(Until::Unresolved));
     assert_eq!([whole.time.len(), ended.time.len()], [trial.steps() as usize + 1, rows]);
     assert_eq!(
@@ -132,6 +141,6 @@ fn stopped_rollouts_say_so() {
     let (trials, every) = walks();
     let control = Control::default();
     control.stop.store(true, Ordering::Relaxed);
-    let outcomes = rollouts(&trials, &every, Until::End, 2, &control).unwrap();
+    let outcomes = rollouts(&trials, &every, Until::End, SolverKind::Unverified, 2, &control).unwrap();
     assert!(outcomes.iter().all(|outcome| *outcome == Outcome::Stopped));
 }

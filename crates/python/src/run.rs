@@ -4,7 +4,7 @@ use crate::convert::{refused, solver, table};
 use crate::trial::PyTrial;
 use dynamics::batch::{Control, Outcome, Until, rollouts as run_rollouts, sweep as run_batch};
 use dynamics::recording::{Ended, record};
-use dynamics::{Metrics, Rollout, Trial};
+use dynamics::{Metrics, Rollout, SolverKind, Trial};
 use numpy::IntoPyArray;
 use pyo3::exceptions::{PyArithmeticError, PyKeyboardInterrupt};
 use pyo3::prelude::*;
@@ -119,7 +119,7 @@ pub fn sweep<'py>(
 }
 
 #[pyfunction]
-#[pyo3(signature = (trials, every, threads=0, on_progress=None, *, while_resolved=false))]
+#[pyo3(signature = (trials, every, threads=0, on_progress=None, *, while_resolved=false, verified=true))]
 pub fn rollouts<'py>(
     py: Python<'py>,
     trials: Vec<PyRef<'py, PyTrial>>,
@@ -127,14 +127,16 @@ pub fn rollouts<'py>(
     threads: usize,
     on_progress: Option<Py<PyAny>>,
     while_resolved: bool,
+    verified: bool,
 ) -> PyResult<Vec<Bound<'py, PyDict>>> {
     if every.len() != trials.len() || every.contains(&0) {
         return Err(refused("every is refused, expected a whole number of at least 1 for each trial"));
     }
     let trials: Vec<Trial> = trials.iter().map(|trial| trial.0.clone()).collect();
     let until = if while_resolved { Until::Unresolved } else { Until::End };
+    let kind = if verified { SolverKind::Reduced } else { SolverKind::Unverified };
     let outcomes = watched(py, trials.len(), on_progress.as_ref(), |control| {
-        run_rollouts(&trials, &every, until, threads, control)
+        run_rollouts(&trials, &every, until, kind, threads, control)
     })?;
     outcomes
         .into_iter()

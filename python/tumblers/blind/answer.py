@@ -25,6 +25,8 @@ class TrueCause:
         Its numbers; those of an effect bear the keys of ``[[effect]]``.
     strength_sigma
         Its strength alone, in standard deviations of the noise.
+    beside_sigma
+        Of two the strength where the other is at work; None for the others, and in answers from before it was asked.
     """
 
     name: str
@@ -32,6 +34,7 @@ class TrueCause:
     form_seed: int | None
     parameters: Mapping[str, Any]
     strength_sigma: float
+    beside_sigma: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

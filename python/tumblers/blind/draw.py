@@ -25,13 +25,13 @@ from .sensing import Nuisances, measure
 from .strength import Strength, strength
 from .world import Scene, Solver, watch
 
-__all__ = ["QUIET_SIGMA", "QUIET_TRIAL_SIGMA", "REPEATS", "draw_dataset"]
+__all__ = ["CLEAR_SIGMA", "LEAST_BESIDE_SIGMA", "QUIET_SIGMA", "QUIET_TRIAL_SIGMA", "REPEATS", "draw_dataset"]
 
 _TARGETS = (0.7, 1.5, 3.0, 6.0, 12.0, 25.0)
 # Two effects, and causes outside the catalogue, are to be seen.
-_CLEAR_TARGETS, _CLEAR = (6.0, 12.0, 25.0), 4.5
+_CLEAR_TARGETS, CLEAR_SIGMA = (6.0, 12.0, 25.0), 4.5
 # Where one of two shows less than the noise beside the other, there is one cause.
-_LEAST_BESIDE = 1.0
+LEAST_BESIDE_SIGMA = 1.0
 # A world without causes is one that its lab would call explained: what jitter shows stays below the noise.
 QUIET_SIGMA, QUIET_TRIAL_SIGMA = 0.7, 1.3
 # What one effect should reach even where its range does not allow the target.
@@ -78,7 +78,12 @@ class _World:
             return None
 
     def beside(self, laws: Sequence[Law]) -> list[float]:
-        """Return how much each of two laws shows where the other is at work; nothing where one cannot."""
+        """Return how much each of two laws shows where the other is at work.
+
+        What a refit of the other would take up is not taken out. Nothing where the motion diverges, with both or with
+        one and a number that is moved. In their order a law may leave nothing for the next: a table of a distorted
+        field is not rolled off.
+        """
         try:
             both, shown = self.scenes(laws), []
             for other in reversed(laws):
@@ -157,7 +162,7 @@ def _draw(about: Task, rng: np.random.Generator, index: int) -> tuple[Dataset, A
             fleeting.append((world, sized))
             continue
         found.append((world, sized))
-        least = min(_SEEN, target) * (1.0 - _CLOSE) if about.kind == "one" else _CLEAR
+        least = min(_SEEN, target) * (1.0 - _CLOSE) if about.kind == "one" else CLEAR_SIGMA
         if _weakest(sized) >= least:
             measured = _measured(about.kind, world, sized, rng, index)
             if measured is not None:
@@ -213,7 +218,7 @@ def _sizes(
                     break
         if not found:
             return None
-        if kind == "one" or max(s.sigma for s in found) >= _CLEAR:
+        if kind == "one" or max(s.sigma for s in found) >= CLEAR_SIGMA:
             sized.append(min(found, key=lambda s: abs(log(s.sigma / target))))
         elif len(sized) + 1 == len(names):
             sized.append(max(found, key=lambda s: s.sigma))
@@ -224,7 +229,7 @@ def _sizes(
         return sized
     # What shows alone may have no part in the motion that another makes: nothing would tell that it is there.
     beside = world.beside([s.law for s in sized])
-    if min(beside) < _LEAST_BESIDE:
+    if min(beside) < LEAST_BESIDE_SIGMA:
         return None
     return [replace(s, beside=sigma) for s, sigma in zip(sized, beside, strict=True)]
 
@@ -299,6 +304,7 @@ def _measured(
                 form_seed=s.cause.form_seed,
                 parameters=s.cause.parameters(s.size),
                 strength_sigma=s.sigma,
+                beside_sigma=s.beside if kind == "two" else None,
             )
             for s in sized
         ),

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..diagnosis.floor import TOLERANCES
-from .draw import QUIET_SIGMA, QUIET_TRIAL_SIGMA, REPEATS
+from .draw import CLEAR_SIGMA, LEAST_BESIDE_SIGMA, QUIET_SIGMA, QUIET_TRIAL_SIGMA, REPEATS
 from .jitter import DIMENSIONS, NUMBERS
 from .layout import STEADY_SIGMA
 from .overlap import halves
@@ -43,12 +43,14 @@ def page_of(scores: Scores) -> str:
         f"world's own step alone show by more than {STEADY_SIGMA:g} sigma; it is drawn again where they would move "
         f"all its numbers by more than {QUIET_SIGMA:g} sigma, or one trial's by more "
         f"than {QUIET_TRIAL_SIGMA:g}, so that the most sensitive motions near step-out and the friction angle are "
-        "missing; causes whose motion depends on the world's own step by more than "
-        f"{100.0 * REPEATS:.0f} % of what they change are drawn again in another lab, up to a dozen times, for a lab "
-        "shows what it sees again; so are two of which either shows less than the noise where the other is at work, "
-        "and after three labs another pair takes their place. An effect counts as named first where it leads the "
-        "effects of the diagnosis, whatever the verdict; as truly tied where the diagnosis itself says that it cannot "
-        "tell it from the first, and the first's estimate shows with the lab's "
+        f"missing. A world whose motion depends on its own step by more than {QUIET_SIGMA:g} sigma and "
+        f"{100.0 * REPEATS:.0f} % of what its causes change is drawn again, up to a dozen times all in all, for a lab "
+        "shows what it sees again. Causes outside the catalogue, and either of two alone and where the other is at "
+        f"work, are to show {CLEAR_SIGMA:g} sigma; after every three labs another pair is drawn. Where no lab has "
+        f"that, the strongest has to do, of two with {LEAST_BESIDE_SIGMA:g} sigma of either beside the other at least. "
+        "An effect counts as named first where it leads the effects of the diagnosis, whatever the verdict; as truly "
+        "tied where the diagnosis itself says that it cannot tell it from the first, and the first's estimate shows "
+        "with the lab's "
         f"numbers what the truth, in its own form, shows with the world's, to {TIE_SIGMA:g} sigma, by simulation, "
         "after the sensor's tolerances and a standard deviation of each nominal number have taken what they can of the "
         "difference, as they do of a cause's strength.",

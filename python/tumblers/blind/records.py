@@ -20,6 +20,9 @@ from .ties import effect_of
 
 __all__ = ["Record", "read_records"]
 
+# How many causes each kind of dataset has.
+_CAUSES = {"none": 0, "one": 1, "two": 2, "outside": 1}
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Record:
@@ -85,8 +88,8 @@ def read_records(directory: str | PathLike[str], answers: str | PathLike[str]) -
     Raises
     ------
     InputError
-        A file that is no such file, a dataset without an answer or a seal, an answer that is not the sealed one, or
-        a cause in a form that is not known.
+        A file that is no such file, a dataset without an answer or a seal, an answer that is not the sealed one, causes
+        that are not as many as the kind says, or one that cannot be at work again.
     """
     directory, answers = Path(directory), Path(answers)
     table = _json(answers, ANSWERS_FORMAT)
@@ -116,10 +119,7 @@ def _record(folder: Path, salt: object, answer: object, answers: Path) -> Record
         raise InputError(folder.name, "an answer that is not the sealed one", f"that of {folder / SEAL}", answers)
     try:
         truth = Answer.from_table(answer)
-        if truth.kind != "outside":
-            # What cannot be at work again would count as tied with nothing.
-            for cause in truth.effects:
-                law_of(effect_of(cause.name, cause.parameters), cause.form, cause.form_seed)
+        _check(truth)
     except InputError as error:
         raise InputError(f"{folder.name}.{error.key}", error.found, error.expected, answers) from None
     except (AttributeError, KeyError, OverflowError, TypeError, ValueError):
@@ -139,6 +139,26 @@ def _record(folder: Path, salt: object, answer: object, answers: Path) -> Record
         repeated_cores=again.get("cores"),
         repeated_same=again.get("same"),
     )
+
+
+def _check(truth: Answer) -> None:
+    """Refuse what would count as nothing: causes not as the kind says, an effect that cannot be at work again."""
+    if truth.kind not in _CAUSES:
+        raise InputError("kind", show(truth.kind), " or ".join(_CAUSES))
+    found, count = len({cause.name for cause in truth.effects}), _CAUSES[truth.kind]
+    if not found == len(truth.effects) == count:
+        raise InputError(
+            "effects", f"{len(truth.effects)} of {found} names", f"{count} of as many where kind is {truth.kind}"
+        )
+    if truth.kind == "outside":
+        return
+    for i, cause in enumerate(truth.effects):
+        try:
+            law_of(effect_of(cause.name, cause.parameters), cause.form, 0)
+        except InputError as error:
+            raise InputError(f"effects[{i}].{error.key}", error.found, error.expected) from None
+        if cause.form != "catalogue" and not (type(cause.form_seed) is int and cause.form_seed >= 0):
+            raise InputError(f"effects[{i}].form_seed", show(cause.form_seed), "a whole number of at least 0")
 
 
 def _is_sealed(sealed: Mapping[str, Any], salt: str, answer: Mapping[str, Any]) -> bool:

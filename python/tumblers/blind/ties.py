@@ -12,7 +12,7 @@ import numpy as np
 from ..dataset import Dataset, LabTrial, load
 from ..effects.base import Effect
 from ..effects.catalogue import get
-from ..errors import TumblersError
+from ..errors import InputError, TumblersError, show
 from .jitter import Jitter
 from .lab import Lab, Plan
 from .law import Law
@@ -38,9 +38,13 @@ def effect_of(name: str, parameters: Mapping[str, float]) -> Effect:
     Raises
     ------
     InputError
-        A name that is not in the catalogue, or a number that is refused.
+        A name that is not in the catalogue, a key that the effect has not, or a number that is refused.
     """
     kind = get(name)
+    known = [p.key for p in kind.parameters]
+    for key in parameters:
+        if key not in known:
+            raise InputError(f"{name}.{show(key)}", "no such parameter", " or ".join(known))
     return kind.from_vector([parameters.get(p.key, p.neutral) for p in kind.parameters])
 
 

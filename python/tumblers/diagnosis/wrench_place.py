@@ -11,15 +11,18 @@ min C(w 1_S)  <  min C(w 1_R) - 2 a (4.5 + ln N),
 
 R a part in which the robot was when its track begins, or when it ends, or all of its way, and S any other: that is,
 where what sets in somewhere and ceases somewhere is three standard deviations clear of what is missing from the start,
-or from a moment on, the nominal model included. A robot that jumps over a part does not say whether it belongs to the
-place: its ends are the means over all S, of weights e^(-C/2a).
+or from a moment on, the nominal model included. Where a trial is off by a hundred standard deviations, an amount that
+is off by a few per cent costs more than a part that is wrong: of the component and the direction that leave least, each
+S and R has the amount that does best for it. A robot that jumps over a part does not say whether it belongs to the
+place: its ends are the means over all S, of weights e^(-C/2ac), with c the least C over the numbers of the trial where
+that is more than one, for a constant wrench is not quite what is there.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import combinations, product
-from math import log, sqrt
+from math import log
 from typing import NamedTuple
 
 import numpy as np
@@ -41,10 +44,11 @@ Floats = NDArray[np.float64]
 
 # The push along the way, that down or up, and the torque that rolls the robot along y: of the wrench's components.
 _COMPONENTS = (1, 2, 3)
-# In units of how much may be missing (`prior_sigma`), in S and in R: along much of the way a little does as much. Of
-# the component and the direction that leave least, amounts between these are tried too.
+# In units of how much may be missing (`prior_sigma`), in S and in R: along much of the way a little does as much. From
+# the best of these, steps by a factor of √2 either way, its logarithm halved so often: to half a per cent.
 _IN_PART = (1.0, 2.0, 4.0, 8.0)
 _ALONG = (0.05, 0.1, 0.2, 0.5, *_IN_PART)
+_HALVINGS = 7
 # Parts of the way: this share of the body's length each, or so many; fewer where all runs would have more steps.
 _PART_OF_BODY, _MOST_PARTS, _MOST_STEPS = 0.25, 12, 40_000_000
 # What takes less than this share of what the nominal model leaves is not what is missing. A choice, made with six spots
@@ -102,19 +106,16 @@ def lacks_at_place(
 
     def left(parts: Sequence[_Part], amounts: Sequence[float]) -> Floats:
         runs = [_while(time, part.inside, end) for part in parts]
-        wrenches = [(c, sign * amount) for c, sign, amount in product(_COMPONENTS, (-1.0, 1.0), amounts)]
-        coarse = _left(comparison, residual, trial, runs, wrenches, tell)
-        component, most = wrenches[int(np.argmin(coarse.min(axis=0)))]
-        between = [(component, float(np.copysign(sqrt(2.0) * amount, most))) for amount in amounts]
-        return np.hstack([coarse, _left(comparison, residual, trial, runs, between, tell)])
+        return _left_at_best(comparison, residual, trial, runs, amounts, tell)
 
     there, elsewhere = left(inner, _IN_PART), left(outer, _ALONG)
     nothing = left_by(comparison, residual, trial, path, residual.trials[trial])
     best, rest = float(np.min(there)), min(nothing, float(np.min(elsewhere)))
-    clear = 2.0 * comparison.alike * (CLEAR + log(there.size + elsewhere.size))
+    clear = 2.0 * comparison.alike * (CLEAR + log(_count(inner, _IN_PART) + _count(outer, _ALONG)))
     if best >= rest - clear or best > (1.0 - _LEAST_TAKEN) * nothing:
         return None
-    weights = np.exp(-(there - best) / (2.0 * comparison.alike)).sum(axis=1)
+    wide = comparison.alike * max(1.0, best / comparison.weighed[trial])
+    weights = np.exp(-(there - best) / (2.0 * wide))
     low, high = weights @ np.array([(part.low, part.high) for part in inner]) / weights.sum()
     within = residual.trials[trial][: comparison.floors[trial].tracked]
     return Region(
@@ -157,7 +158,7 @@ def _parts(y: Floats, count: int) -> tuple[list[_Part], list[_Part]]:
 
 def _count(parts: Sequence[_Part], amounts: Sequence[float]) -> int:
     """Return how many runs some parts ask for."""
-    return len(parts) * (2 * len(_COMPONENTS) + 1) * len(amounts)
+    return len(parts) * (2 * len(_COMPONENTS) * len(amounts) + 2 * _HALVINGS)
 
 
 def _while(time_s: Floats, inside: NDArray[np.bool_], end_s: float) -> Pieces:
@@ -168,21 +169,49 @@ def _while(time_s: Floats, inside: NDArray[np.bool_], end_s: float) -> Pieces:
     return Pieces(edges, np.where(windows.all(), 0, windows).astype(np.intp))
 
 
+def _left_at_best(
+    comparison: Comparison,
+    residual: Residual,
+    trial: int,
+    runs: Sequence[Pieces],
+    amounts: Sequence[float],
+    tell: OnPhase,
+) -> Floats:
+    """Return what the model leaves with the best wrench in the last window of each run, shape (runs,)."""
+    if not runs:
+        return np.full(1, np.inf)
+    wrenches = [(c, sign * amount) for c, sign, amount in product(_COMPONENTS, (-1.0, 1.0), amounts)]
+    coarse = _left(comparison, residual, trial, runs, [wrenches] * len(runs), tell)
+    component, amount = wrenches[int(np.argmin(coarse.min(axis=0)))]
+    same = [k for k, (c, other) in enumerate(wrenches) if c == component and other * amount > 0.0]
+    found = coarse[:, same].min(axis=1)
+    at = np.array([wrenches[k][1] for k in same])[coarse[:, same].argmin(axis=1)]
+    for halving in range(1, _HALVINGS + 1):
+        step = 2.0 ** (0.5**halving)
+        beside = np.column_stack([at / step, at * step])
+        tried = _left(comparison, residual, trial, runs, [[(component, one) for one in row] for row in beside], tell)
+        nearest = tried.argmin(axis=1)
+        better = tried.min(axis=1) < found
+        at = np.where(better, beside[np.arange(len(runs)), nearest], at)
+        found = np.where(better, tried.min(axis=1), found)
+    return np.asarray(np.minimum(found, coarse.min(axis=1)), dtype=np.float64)
+
+
 def _left(
     comparison: Comparison,
     residual: Residual,
     trial: int,
     runs: Sequence[Pieces],
-    wrenches: Sequence[tuple[int, float]],
+    wrenches: Sequence[Sequence[tuple[int, float]]],
     tell: OnPhase,
 ) -> Floats:
-    """Return what the model leaves with each wrench in the last window of each run, shape (runs, wrenches)."""
+    """Return what the model leaves with each of its wrenches in the last window of each run, shape (runs, wrenches)."""
     prior = prior_sigma(comparison.simulator.nominal(trial))
-    left = np.full((len(runs), len(wrenches)), np.inf)
-    for n, pieces in enumerate(runs):
+    left = np.full((len(runs), len(wrenches[0])), np.inf)
+    for n, (pieces, those) in enumerate(zip(runs, wrenches, strict=True)):
         tell("in which place something is missing", n, len(runs))
         jobs = []
-        for component, amount in wrenches:
+        for component, amount in those:
             wrench = np.zeros((pieces.count, 6))
             wrench[-1, component] = amount * prior[component]
             jobs.append(Job(trial, edit=added(pieces, wrench)))
