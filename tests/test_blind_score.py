@@ -133,6 +133,12 @@ def value(scores: Scores, words: str) -> float | None:
     return next(c.value for c in scores.criteria if c.words.startswith(words))
 
 
+def test_what_is_explained_is_right_where_all_causes_are_named_and_nothing_else() -> None:
+    explained = scored().explained
+    assert (explained.hits, explained.count) == (4, 7)
+    assert "Of 7 that are `explained`, 4 name all" in page_of(scored())
+
+
 def test_what_was_diagnosed_again_counts_for_time_and_sameness() -> None:
     again = [
         replace(record(number, answer("none"), said("no_gap", shrink=None)), repeated_seconds=50.0 * (number + 1),

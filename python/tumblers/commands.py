@@ -81,17 +81,6 @@ def _tumblers(
     """
 
 
-app.command()(diagnose)
-app.command()(climb)
-app.command()(tolerance)
-app.command()(design)
-app.command()(convergence)
-app.command()(view)
-app.command()(reproduce)
-app.add_typer(blind_app, name="blind")
-
-
-@app.command()
 def simulate(
     scenario: _ScenarioFile,
     out: _Out,
@@ -132,7 +121,6 @@ def simulate(
     _warn(run_warnings(result))
 
 
-@app.command()
 def sweep(
     robot: Annotated[
         str,
@@ -200,7 +188,6 @@ def sweep(
     _warn(sweep_warnings(result))
 
 
-@app.command()
 def presets(
     name: Annotated[str | None, typer.Argument(help="Preset to print as TOML; all are listed without it.")] = None,
 ) -> None:
@@ -277,6 +264,23 @@ def _warn(warnings: list[str]) -> None:
 def _failed(words: str, status: int) -> int:
     typer.echo(f"tumblers: {' '.join(words.split())}", err=True)
     return status
+
+
+# In the order in which a newcomer needs them.
+for _command, _words in (
+    (presets, "List the paper's robots, substrates, drives, experiments."),
+    (simulate, "Run one scenario."),
+    (sweep, "Run a grid of drafts and magnetization errors."),
+    (diagnose, "Say where model and lab part, why, and what to try next."),
+    (view, "Draw a saved run: pictures, an animation, a 3-D page."),
+    (climb, "Find the greatest slope that a robot climbs."),
+    (tolerance, "Find the errors with which a robot still works."),
+    (design, "Explore the shapes around a robot."),
+    (convergence, "Compute headline numbers for several steps."),
+    (reproduce, "Run every result of the paper beside its number."),
+):
+    app.command(short_help=_words)(_command)
+app.add_typer(blind_app, name="blind", short_help="Test the diagnosis on causes that are drawn and sealed.")
 
 
 def run() -> int:

@@ -71,6 +71,8 @@ def page_of(scores: Scores) -> str:
                 for kind, said in scores.verdicts.items()
             ],
         ),
+        f"Of {scores.explained.count} that are `explained`, {scores.explained.hits} name all that was at work and "
+        "nothing else.",
         "## One effect, by its strength",
         _table(
             ("strength, sigma", "named first", "of"),

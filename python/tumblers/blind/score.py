@@ -80,6 +80,8 @@ class Scores:
         Strength's bin, sigma, to how many single effects were named first.
     verdicts
         Kind of truth to verdict to a number.
+    explained
+        How many of those that are ``explained`` name all that was at work and nothing else.
     reliability
         Stated probability's bin to (mean probability, share that was right, number).
     calibration_error
@@ -112,6 +114,7 @@ class Scores:
     confusion: Mapping[str, Mapping[str, int]]
     by_strength: Mapping[str, Share]
     verdicts: Mapping[str, Mapping[str, int]]
+    explained: Share
     reliability: Mapping[str, tuple[float, float, int]]
     calibration_error: float | None
     coverage_by_effect: Mapping[str, Share]
@@ -243,6 +246,7 @@ def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores
             for low, high in STRENGTH_BINS
         },
         verdicts={kind: _tally(r.verdict for r in of_kind) for kind, of_kind in kinds.items()},
+        explained=share_of([set(r.named) == set(r.truth) for r in records if r.verdict == "explained"]),
         reliability=reliability,
         calibration_error=calibration_error,
         coverage_by_effect=coverage,
