@@ -59,6 +59,14 @@ def test_two_effects_are_both_named() -> None:
     assert "and a slope of -3.0° ± 0.5° along y, together, explain 93 %" in words
 
 
+def test_the_summary_has_the_verdict_of_the_file() -> None:
+    lines = summary(made()).splitlines()
+    assert "  verdict      explained; what is tied would explain it as well" in lines
+    alone = tuple(replace(effect, confounded_with=()) for effect in made().effects)
+    assert "  verdict      explained" in summary(made(effects=alone)).splitlines()
+    assert "  verdict      no_gap" in summary(no_gap()).splitlines()
+
+
 def test_the_summary_says_where_what_how_far_ties_and_next() -> None:
     said = dict(points(made()))
     assert "81 % of the gap at frequency 12 to 15 Hz" in said["where"]
@@ -197,7 +205,7 @@ def test_an_effect_of_the_users_own_falls_back_to_its_docstring(tmp_path: Path, 
     [
         (Interval(0.0482, 0.0441, 0.0522), "T/m", "0.048 ± 0.004 T/m"),
         (Interval(5.1e-6, 4.3e-6, 5.9e-6), "m", "5.1 ± 0.8 µm"),
-        (Interval(5.1e-6, 4.9e-6, 9.9e-6), "m", "5 µm (5 to 10)"),
+        (Interval(5.1e-6, 4.9e-6, 9.9e-6), "m", "5.1 µm (4.9 to 10)"),
         (Interval(0.0, -1e-7, 1e-7), "N", "0 ± 100 nN"),
         (Interval(12e-3, 10e-3, 14e-3), "s", "12 ± 2 ms"),
         (Interval(2.1e7, 1.9e7, 2.3e7), "S", "21 ± 2 MS"),

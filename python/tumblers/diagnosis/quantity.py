@@ -15,6 +15,8 @@ _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, 
 _WRITTEN = {"1": "", "degrees": "°", "m/N": "µm/µN"}
 # An interval whose arms differ by more is written by its ends.
 _LOPSIDED = 2.0
+# An end counts as no nearer than this share of half the interval.
+_FINEST = 0.02
 _UNKNOWN = "unknown"
 
 
@@ -57,7 +59,7 @@ def rounded(value: float, error: float | None = None) -> str:
 
 
 def with_interval(interval: Interval, unit: str) -> str:
-    """Return an estimate with its 90 % interval: ``5.1 ± 0.8 µm``, or ``5.1 µm (3.0 to 9.6)`` where it is lopsided.
+    """Return an estimate with its 90 % interval: ``5.1 ± 0.8 µm``, or ``5.1 µm (4.9 to 10)`` where it is lopsided.
 
     Parameters
     ----------
@@ -79,7 +81,10 @@ def with_interval(interval: Interval, unit: str) -> str:
         return f"{text}{after}"
     down, up = value - low, high - value
     if min(down, up) <= 0.0 or max(down, up) > _LOPSIDED * min(down, up):
-        return f"{text}{after} ({rounded(low, half)} to {rounded(high, half)})"
+        # By its nearer end, or it would look like one.
+        fine = max(min((arm for arm in (down, up) if arm > 0.0), default=0.0), _FINEST * half)
+        ends = (rounded(end, fine if arm < half else half) for end, arm in ((low, down), (high, up)))
+        return f"{rounded(value, fine)}{after} ({' to '.join(ends)})"
     return f"{text} ± {rounded(half, half)}{after}" if written != "°" else f"{text}° ± {rounded(half, half)}°"
 
 

@@ -109,7 +109,7 @@ def summary(diagnosis: Diagnosis) -> str:
     """
     lines = textwrap.wrap(headline(diagnosis), _WIDTH, break_on_hyphens=False)
     last = ""
-    for label, text in points(diagnosis):
+    for label, text in (("verdict", _verdict(diagnosis)), *points(diagnosis)):
         start = f"  {label if label != last else '':{_LABEL}}"
         last = label
         lines += textwrap.wrap(
@@ -158,6 +158,12 @@ def headline(diagnosis: Diagnosis) -> str:
         f"Unexplained: {left}, and {none}. The best partial cause is that {partial}; "
         f"with it, {_sigmas(gap.after)} are left."
     )
+
+
+def _verdict(diagnosis: Diagnosis) -> str:
+    """Return the verdict as ``diagnosis.json`` has it, and whether something else would do as well."""
+    tied = diagnosis.verdict == "explained" and any(effect.confounded_with for effect in diagnosis.effects)
+    return f"{diagnosis.verdict}; what is tied would explain it as well" if tied else diagnosis.verdict
 
 
 def points(diagnosis: Diagnosis, *, whole: bool = False) -> tuple[tuple[str, str], ...]:
