@@ -113,15 +113,17 @@ def phases(progress: bool | OnPhase) -> Iterator[OnPhase]:
 
 
 def _lines(console: Console) -> OnPhase:
-    """Return a callback that writes a plain line every ten seconds."""
-    due = monotonic() + _BETWEEN_LINES_S
+    """Return a callback that writes a plain line every ten seconds, with the time that has passed."""
+    begun = monotonic()
+    due = begun + _BETWEEN_LINES_S
 
     def tell(phase: str, done: int, total: int) -> None:
         nonlocal due
-        if monotonic() < due:
+        now = monotonic()
+        if now < due:
             return
-        due = monotonic() + _BETWEEN_LINES_S
-        console.file.write(f"tumblers: {phase} {done}/{total}\n")
+        due = now + _BETWEEN_LINES_S
+        console.file.write(f"tumblers: {now - begun:.0f} s, {phase} {done}/{total}\n")
         console.file.flush()
 
     return tell
