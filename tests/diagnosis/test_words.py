@@ -81,7 +81,10 @@ def test_the_summary_says_where_what_how_far_ties_and_next() -> None:
     assert "90 to 95 %" in said["how far"]
     assert said["tied"] == "these trials cannot tell stray field gradient from viscous drag."
     assert "substrate tilt, friction coefficient by trial f01 (10 mT at 1 Hz, level)" in said["ruled out"]
-    assert said["next trial"].startswith("20 mT at 15 Hz, level, 2 s: separates stray field gradient from viscous drag")
+    assert [text for label, text in points(made()) if label == "next trial"] == [
+        "20 mT at 15 Hz, level, 2 s: separates stray field gradient from viscous drag, 0.82 bit in all.",
+        "the one is faster, the other slower.",
+    ]
     assert max(map(len, summary(made()).splitlines())) <= 100
 
 

@@ -188,12 +188,13 @@ def points(diagnosis: Diagnosis, *, whole: bool = False) -> tuple[tuple[str, str
     if diagnosis.next_trials:
         first, *others = diagnosis.next_trials
         nothing = "" if first.within_ranges else "none like those done so far tells them apart; beyond them "
-        said.append(("next trial", nothing + _next(first)))
+        said += _next("next trial", nothing, first)
         telling = [
             t for t in others if not t.within_ranges and t.information_bits > _MUCH_MORE * first.information_bits
         ]
         # Beyond the ranges of the lab only where that is worth the trouble.
-        said += [("or, beyond", f"what was done so far: {_next(other)}") for other in telling[:1]]
+        for other in telling[:1]:
+            said += _next("or", "", other)
     elif any(effect.confounded_with for effect in diagnosis.effects):
         said.append(("next trial", NO_TRIAL))
     said += [("caution", text) for text in cautions(diagnosis)]
@@ -397,6 +398,8 @@ def _ruled_out(diagnosis: Diagnosis, most: int | None) -> Iterator[str]:
         yield "; ".join(said) + (f"; {more} more in the report" if more > 0 else "") + "."
 
 
-def _next(proposed: NextTrial) -> str:
-    bits = rounded(proposed.information_bits)
-    return f"{condition_of_table(proposed.trial)}: {reason_words(proposed.why)} ({bits} bit)."
+def _next(label: str, before: str, proposed: NextTrial) -> list[tuple[str, str]]:
+    """Return what a trial tells apart, and on a line of its own what each effect says of it."""
+    reason, _, foretold = reason_words(proposed.why).partition(": ")
+    tells = f"{condition_of_table(proposed.trial)}: {reason}, {rounded(proposed.information_bits)} bit in all."
+    return [(label, before + tells), *((label, f"{says}.") for says in foretold.split("; ") if says)]
