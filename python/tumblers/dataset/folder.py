@@ -63,7 +63,7 @@ def _contents(file: Path, read: Callable[[Path], bytes]) -> str:
     except (OSError, ValueError) as error:
         # A NUL byte is not for a line.
         name = None if isinstance(error, OSError) else repr(str(file))[1:-1]
-        raise InputError(None, unreadable(error), f"a {FORMAT} file", name) from None
+        raise InputError(None, unreadable(error), f"a {FORMAT} file, or its folder", name) from None
 
 
 def _dataset(contents: str, directory: Path) -> Dataset:
