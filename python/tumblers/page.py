@@ -32,7 +32,7 @@ nav a { margin-right: 0.9rem; white-space: nowrap; display: inline-block; }
 a { color: var(--blue); }
 dl { display: grid; grid-template-columns: 7rem 1fr; gap: 0.35rem 0.9rem; margin: 1rem 0; max-width: 52rem; }
 dt { color: var(--soft); }
-dd { margin: 0; }
+dd { margin: 0; grid-column: -2; }
 .wide { overflow-x: auto; margin: 0.6rem 0; }
 table { border-collapse: collapse; font-size: 0.88rem; font-variant-numeric: tabular-nums; overflow-wrap: normal; }
 th, td { text-align: left; padding: 0.28rem 0.8rem 0.28rem 0; border-bottom: 1px solid var(--line);

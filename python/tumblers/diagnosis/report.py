@@ -47,9 +47,10 @@ def report_html(diagnosis: Diagnosis) -> str:
         ("again", "To repeat it", _again(diagnosis)),
     ]
     links = "".join(f'<a href="#{anchor}">{escape(words)}</a>' for anchor, words, content in sections if content)
-    said = "".join(
-        f"<dt>{escape(label)}</dt><dd>{escape(words)}</dd>\n" for label, words in points(diagnosis, whole=True)
-    )
+    said, last = "", ""
+    for label, words in points(diagnosis, whole=True):
+        said += ("" if label == last else f"<dt>{escape(label)}</dt>") + f"<dd>{escape(words)}</dd>\n"
+        last = label
     body = (
         f"<h1>Diagnosis: {escape(title)}</h1>\n"
         f'<p class="verdict {diagnosis.verdict}"><b>{_VERDICTS[diagnosis.verdict]}</b>'
