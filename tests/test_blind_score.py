@@ -139,6 +139,15 @@ def test_what_is_explained_is_right_where_all_causes_are_named_and_nothing_else(
     assert "Of 7 that are `explained`, 4 name all" in page_of(scored())
 
 
+@pytest.mark.parametrize("beside", [3.0, None])
+def test_the_page_tells_what_two_causes_show_beside_each_other_where_the_answers_do(beside: float | None) -> None:
+    truth = answer("two", FRICTION, TILT)
+    truth = replace(truth, effects=tuple(replace(cause, beside_sigma=beside) for cause in truth.effects))
+    page = page_of(score_records([record(0, truth, said("no_gap"))], 1, lambda _: 0.0))
+    assert ("either of two alone and where the other is at work are to show 4.5 sigma" in page) == (beside is not None)
+    assert ("of two with 1 sigma of either beside the other" in page) == (beside is not None)
+
+
 def test_what_was_diagnosed_again_counts_for_time_and_sameness() -> None:
     again = [
         replace(record(number, answer("none"), said("no_gap", shrink=None)), repeated_seconds=50.0 * (number + 1),
@@ -287,6 +296,7 @@ def test_files_are_refused_in_one_line(file: str, text: str, found: str, tmp_pat
         ),
         (("friction_coefficient", "runs_in", {"factor": 0.8}), "form_seed: found None, expected a whole number"),
         (("static_friction", "catalogue", {}), "static_friction"),
+        (("friction_coefficient", "catalogue", {}), "friction_coefficient: found what changes nothing"),
     ],
 )
 def test_a_cause_that_cannot_be_at_work_again_is_refused(
@@ -302,9 +312,9 @@ def test_a_cause_that_cannot_be_at_work_again_is_refused(
     ("truth", "found"),
     [
         (("twoo", FRICTION), r"kind: found 'twoo', expected none or one or two or outside"),
-        (("one",), "effects: found 0 of 0 names, expected 1"),
-        (("none", FRICTION), "effects: found 1 of 1 names, expected 0"),
-        (("two", FRICTION, FRICTION), "effects: found 2 of 1 names, expected 2"),
+        (("one",), "effects: found 0 causes with 0 names, expected 1 different ones for kind one"),
+        (("none", FRICTION), "effects: found 1 causes with 1 names, expected 0"),
+        (("two", FRICTION, FRICTION), "effects: found 2 causes with 1 names, expected 2"),
     ],
 )
 def test_causes_are_as_many_as_the_kind_says(truth: Any, found: str, tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ from tumblers.diagnosis.localise import localise
 from tumblers.diagnosis.onset import _evidence, _shared, begins_at_phase, begins_at_place, begins_at_time
 from tumblers.diagnosis.result import Region
 from tumblers.diagnosis.simulator import Simulator
-from tumblers.diagnosis.wrench_place import _parts, _while, lacks_at_place
+from tumblers.diagnosis.wrench_place import _left_at_best, _parts, _while, lacks_at_place
 from tumblers.effects import get
 from tumblers.effects.base import Effect
 from tumblers.presets import drive
@@ -166,6 +166,31 @@ def test_a_wrench_acts_while_the_robot_is_inside_and_then_alone() -> None:
     assert pieces.window.tolist() == [0, 1, 0, 1, 0]
     whole = _while(time, np.ones(7, dtype=bool), 1.0)
     assert (whole.edges.tolist(), whole.window.tolist()) == ([0.0, 1.0], [0])
+
+
+class _Valleys:
+    """What is left is a narrow valley along the logarithm of the amount, of a place, a component and a direction."""
+
+    def __init__(self, valleys: dict[tuple[str, int, float], tuple[float, float]]) -> None:
+        self.valleys = valleys
+
+    def left(self, those: list[tuple[str, int, float]]) -> np.ndarray:
+        found = []
+        for part, component, amount in those:
+            least, at = self.valleys.get((part, component, np.sign(amount)), (np.inf, 1.0))
+            found.append(least + 1e4 * np.log(abs(amount) / at) ** 2)
+        return np.array(found)
+
+
+def test_each_part_of_the_way_has_the_amount_that_does_best_for_it_in_either_ones_component() -> None:
+    valleys = {("a", 2, -1.0): (100.0, 3.1), ("b", 2, -1.0): (10.0, 1.3), ("out", 2, -1.0): (50.0, 0.77)}
+    # Of the amounts that are tried first another component has the best for what is outside.
+    valleys |= {("out", 1, 1.0): (300.0, 0.5), ("a", 1, 1.0): (2000.0, 1.0)}
+    families = [(["a", "b", "never"], (1.0, 2.0, 4.0)), (["out"], (0.5, 1.0, 2.0)), ([], (1.0,))]
+    inner, outer, none = _left_at_best(_Valleys(valleys), families)  # type: ignore[arg-type]
+    assert inner == pytest.approx([100.0, 10.0, np.inf], abs=1.0)
+    assert outer == pytest.approx([50.0], abs=1.0)
+    assert none.shape == (0,)
 
 
 def test_a_trial_that_was_not_seen_along_y_tells_no_place() -> None:

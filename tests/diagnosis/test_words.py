@@ -82,8 +82,9 @@ def test_the_summary_says_where_what_how_far_ties_and_next() -> None:
     assert said["tied"] == "these trials cannot tell stray field gradient from viscous drag."
     assert "substrate tilt, friction coefficient by trial f01 (10 mT at 1 Hz, level)" in said["ruled out"]
     assert [text for label, text in points(made()) if label == "next trial"] == [
-        "20 mT at 15 Hz, level, 2 s: separates stray field gradient from viscous drag, 0.82 bit in all.",
+        "20 mT at 15 Hz, level, 2 s: separates stray field gradient from viscous drag.",
         "the one is faster, the other slower.",
+        "expected information over all of them: 0.82 bit.",
     ]
     assert max(map(len, summary(made()).splitlines())) <= 100
 
@@ -209,6 +210,8 @@ def test_an_effect_of_the_users_own_falls_back_to_its_docstring(tmp_path: Path, 
         (Interval(0.0482, 0.0441, 0.0522), "T/m", "0.048 ± 0.004 T/m"),
         (Interval(5.1e-6, 4.3e-6, 5.9e-6), "m", "5.1 ± 0.8 µm"),
         (Interval(5.1e-6, 4.9e-6, 9.9e-6), "m", "5.1 µm (4.9 to 10)"),
+        (Interval(0.04, 0.04, 0.25), "1", "0.04 (0.04 to 0.25)"),
+        (Interval(1.078, 1.069, 1.88), "1", "1.078 (1.069 to 1.9)"),
         (Interval(0.0, -1e-7, 1e-7), "N", "0 ± 100 nN"),
         (Interval(12e-3, 10e-3, 14e-3), "s", "12 ± 2 ms"),
         (Interval(2.1e7, 1.9e7, 2.3e7), "S", "21 ± 2 MS"),

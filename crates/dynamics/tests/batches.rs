@@ -80,6 +80,24 @@ fn a_rollout_has_the_poses_of_a_recording() {
 }
 
 #[test]
+fn a_run_of_steps_on_their_word_has_the_same_poses_and_no_residual() {
+    let (trials, every) = walks();
+    let run = |kind| walked(rollouts(&trials, &every, Until::End, kind, 2, &Control::default()).unwrap());
+    assert_eq!(run(SolverKind::Unverified), run(SolverKind::Reduced));
+    for trial in &trials {
+        let recorded = |kind| record(trial, kind, 1, |_| ControlFlow::Continue(())).unwrap();
+        let ((word, word_metrics), (held, held_metrics)) =
+            (recorded(SolverKind::Unverified), recorded(SolverKind::Reduced));
+        assert_eq!(word.position, held.position);
+        assert!(word.residual[1..].iter().all(|residual| residual.is_nan()));
+        // However many steps follow.
+        assert!(word_metrics.max_residual.is_nan());
+        assert!(held_metrics.max_residual <= 1e-10);
+        assert_eq!(word_metrics.speed, held_metrics.speed);
+    }
+}
+
+#[test]
 fn the_poses_do_not_depend_on_the_threads() {
     let (trials, every) = walks();
     let run = |threads| -> Vec<_> {

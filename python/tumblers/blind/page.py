@@ -44,10 +44,8 @@ def page_of(scores: Scores) -> str:
         f"all its numbers by more than {QUIET_SIGMA:g} sigma, or one trial's by more "
         f"than {QUIET_TRIAL_SIGMA:g}, so that the most sensitive motions near step-out and the friction angle are "
         f"missing. A world whose motion depends on its own step by more than {QUIET_SIGMA:g} sigma and "
-        f"{100.0 * REPEATS:.0f} % of what its causes change is drawn again, up to a dozen times all in all, for a lab "
-        "shows what it sees again. Causes outside the catalogue, and either of two alone and where the other is at "
-        f"work, are to show {CLEAR_SIGMA:g} sigma; after every three labs another pair is drawn. Where no lab has "
-        f"that, the strongest has to do, of two with {LEAST_BESIDE_SIGMA:g} sigma of either beside the other at least. "
+        f"{100.0 * REPEATS:.0f} % of what its causes change is drawn again, for a lab shows what it sees again: it is "
+        f"taken where none else was found in a dozen labs. {_clear(scores)}"
         "An effect counts as named first where it leads the effects of the diagnosis, whatever the verdict; as truly "
         "tied where the diagnosis itself says that it cannot tell it from the first, and the first's estimate shows "
         "with the lab's "
@@ -71,8 +69,7 @@ def page_of(scores: Scores) -> str:
                 for kind, said in scores.verdicts.items()
             ],
         ),
-        f"Of {scores.explained.count} that are `explained`, {scores.explained.hits} name all that was at work and "
-        "nothing else.",
+        _explained(scores),
         "## One effect, by its strength",
         _table(
             ("strength, sigma", "named first", "of"),
@@ -163,6 +160,20 @@ def _repeated(scores: Scores) -> str:
     )
 
 
+def _clear(scores: Scores) -> str:
+    """Return what is to be seen, and what of two causes, which older answers do not tell."""
+    two = (
+        "either of two alone and where the other is at work"
+        if scores.beside
+        else "either of two alone, though not where the other is at work,"
+    )
+    least = f", of two with {LEAST_BESIDE_SIGMA:g} sigma of either beside the other at least" if scores.beside else ""
+    return (
+        f"Causes outside the catalogue, and {two} are to show {CLEAR_SIGMA:g} sigma; after every three labs another "
+        f"pair is drawn. Where no lab has that, the strongest has to do{least}. "
+    )
+
+
 def print_scores(scores: Scores) -> None:
     """Print what has to hold, and the accuracy by strength, as tables.
 
@@ -188,6 +199,12 @@ def print_scores(scores: Scores) -> None:
     for name, share in scores.by_strength.items():
         table.add_row(name, _percent(share.share), str(share.count))
     console.print(table)
+    console.print(_explained(scores))
+
+
+def _explained(scores: Scores) -> str:
+    said = scores.explained
+    return f"Of {said.count} that are `explained`, {said.hits} name all that was at work and nothing else."
 
 
 def _criterion_row(criterion: Criterion) -> tuple[str, str, str, str]:

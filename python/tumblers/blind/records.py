@@ -147,14 +147,16 @@ def _check(truth: Answer) -> None:
         raise InputError("kind", show(truth.kind), " or ".join(_CAUSES))
     found, count = len({cause.name for cause in truth.effects}), _CAUSES[truth.kind]
     if not found == len(truth.effects) == count:
-        raise InputError(
-            "effects", f"{len(truth.effects)} of {found} names", f"{count} of as many where kind is {truth.kind}"
-        )
+        said = f"{len(truth.effects)} causes with {found} names"
+        raise InputError("effects", said, f"{count} different ones for kind {truth.kind}")
     if truth.kind == "outside":
         return
     for i, cause in enumerate(truth.effects):
         try:
-            law_of(effect_of(cause.name, cause.parameters), cause.form, 0)
+            effect = effect_of(cause.name, cause.parameters)
+            if effect.is_neutral():
+                raise InputError(cause.name, "what changes nothing", "a parameter that is not neutral")
+            law_of(effect, cause.form, 0)
         except InputError as error:
             raise InputError(f"effects[{i}].{error.key}", error.found, error.expected) from None
         if cause.form != "catalogue" and not (type(cause.form_seed) is int and cause.form_seed >= 0):

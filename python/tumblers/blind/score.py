@@ -80,6 +80,8 @@ class Scores:
         Strength's bin, sigma, to how many single effects were named first.
     verdicts
         Kind of truth to verdict to a number.
+    beside
+        Whether the answers tell what each of two causes shows where the other is at work.
     explained
         How many of those that are ``explained`` name all that was at work and nothing else.
     reliability
@@ -114,6 +116,7 @@ class Scores:
     confusion: Mapping[str, Mapping[str, int]]
     by_strength: Mapping[str, Share]
     verdicts: Mapping[str, Mapping[str, int]]
+    beside: bool
     explained: Share
     reliability: Mapping[str, tuple[float, float, int]]
     calibration_error: float | None
@@ -246,6 +249,7 @@ def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores
             for low, high in STRENGTH_BINS
         },
         verdicts={kind: _tally(r.verdict for r in of_kind) for kind, of_kind in kinds.items()},
+        beside=any(cause.beside_sigma is not None for record in records for cause in record.answer.effects),
         explained=share_of([set(r.named) == set(r.truth) for r in records if r.verdict == "explained"]),
         reliability=reliability,
         calibration_error=calibration_error,

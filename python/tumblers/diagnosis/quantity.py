@@ -82,7 +82,8 @@ def with_interval(interval: Interval, unit: str) -> str:
     down, up = value - low, high - value
     if min(down, up) <= 0.0 or max(down, up) > _LOPSIDED * min(down, up):
         # By its nearer end, or it would look like one.
-        fine = max(min((arm for arm in (down, up) if arm > 0.0), default=0.0), _FINEST * half)
+        nearer = min((arm for arm in (down, up) if arm > 0.0), default=0.0)
+        fine = min(max(nearer, _FINEST * half), half)
         ends = (rounded(end, fine if arm < half else half) for end, arm in ((low, down), (high, up)))
         return f"{rounded(value, fine)}{after} ({' to '.join(ends)})"
     return f"{text} ± {rounded(half, half)}{after}" if written != "°" else f"{text}° ± {rounded(half, half)}°"

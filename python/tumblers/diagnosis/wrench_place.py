@@ -12,10 +12,11 @@ min C(w 1_S)  <  min C(w 1_R) - 2 a (4.5 + ln N),
 R a part in which the robot was when its track begins, or when it ends, or all of its way, and S any other: that is,
 where what sets in somewhere and ceases somewhere is three standard deviations clear of what is missing from the start,
 or from a moment on, the nominal model included. Where a trial is off by a hundred standard deviations, an amount that
-is off by a few per cent costs more than a part that is wrong: of the component and the direction that leave least, each
-S and R has the amount that does best for it. A robot that jumps over a part does not say whether it belongs to the
-place: its ends are the means over all S, of weights e^(-C/2ac), with c the least C over the numbers of the trial where
-that is more than one, for a constant wrench is not quite what is there.
+is off by a few per cent costs more than a part that is wrong: of the component and the direction that leave least in
+some S, and of those that do in some R, each S and R has the amount that does best for it. A robot that jumps over a
+part does not say whether it belongs to the place: its ends are the means over all S, of weights e^(-C/2ac), with c the
+least C over the numbers of the trial where that is more than one. A constant wrench is not quite what is there: that
+blurs the ends. Whether there is a place it does not: S and R are as constant, and a third of C at least must be gone.
 """
 
 from __future__ import annotations
@@ -49,6 +50,8 @@ _COMPONENTS = (1, 2, 3)
 _IN_PART = (1.0, 2.0, 4.0, 8.0)
 _ALONG = (0.05, 0.1, 0.2, 0.5, *_IN_PART)
 _HALVINGS = 7
+# Runs of one batch.
+_AT_ONCE = 256
 # Parts of the way: this share of the body's length each, or so many; fewer where all runs would have more steps.
 _PART_OF_BODY, _MOST_PARTS, _MOST_STEPS = 0.25, 12, 40_000_000
 # What takes less than this share of what the nominal model leaves is not what is missing. A choice, made with six spots
@@ -102,16 +105,18 @@ def lacks_at_place(
         inner, outer = _parts(y, count)
     if not inner:
         return None
-    tell = on_phase or (lambda _phase, _done, _total: None)
-
-    def left(parts: Sequence[_Part], amounts: Sequence[float]) -> Floats:
-        runs = [_while(time, part.inside, end) for part in parts]
-        return _left_at_best(comparison, residual, trial, runs, amounts, tell)
-
-    there, elsewhere = left(inner, _IN_PART), left(outer, _ALONG)
+    total = _count(inner, _IN_PART) + _count(outer, _ALONG)
+    runs = _Runs(comparison, residual, trial, total, on_phase or (lambda _phase, _done, _total: None))
+    there, elsewhere = _left_at_best(
+        runs,
+        [
+            ([_while(time, part.inside, end) for part in parts], amounts)
+            for parts, amounts in ((inner, _IN_PART), (outer, _ALONG))
+        ],
+    )
     nothing = left_by(comparison, residual, trial, path, residual.trials[trial])
-    best, rest = float(np.min(there)), min(nothing, float(np.min(elsewhere)))
-    clear = 2.0 * comparison.alike * (CLEAR + log(_count(inner, _IN_PART) + _count(outer, _ALONG)))
+    best, rest = float(np.min(there)), min(nothing, float(np.min(elsewhere, initial=np.inf)))
+    clear = 2.0 * comparison.alike * (CLEAR + log(total))
     if best >= rest - clear or best > (1.0 - _LEAST_TAKEN) * nothing:
         return None
     wide = comparison.alike * max(1.0, best / comparison.weighed[trial])
@@ -157,8 +162,8 @@ def _parts(y: Floats, count: int) -> tuple[list[_Part], list[_Part]]:
 
 
 def _count(parts: Sequence[_Part], amounts: Sequence[float]) -> int:
-    """Return how many runs some parts ask for."""
-    return len(parts) * (2 * len(_COMPONENTS) * len(amounts) + 2 * _HALVINGS)
+    """Return how many runs some parts ask for at most."""
+    return len(parts) * (2 * len(_COMPONENTS) * len(amounts) + 4 * _HALVINGS)
 
 
 def _while(time_s: Floats, inside: NDArray[np.bool_], end_s: float) -> Pieces:
@@ -169,54 +174,72 @@ def _while(time_s: Floats, inside: NDArray[np.bool_], end_s: float) -> Pieces:
     return Pieces(edges, np.where(windows.all(), 0, windows).astype(np.intp))
 
 
-def _left_at_best(
-    comparison: Comparison,
-    residual: Residual,
-    trial: int,
-    runs: Sequence[Pieces],
-    amounts: Sequence[float],
-    tell: OnPhase,
-) -> Floats:
-    """Return what the model leaves with the best wrench in the last window of each run, shape (runs,)."""
-    if not runs:
-        return np.full(1, np.inf)
-    wrenches = [(c, sign * amount) for c, sign, amount in product(_COMPONENTS, (-1.0, 1.0), amounts)]
-    coarse = _left(comparison, residual, trial, runs, [wrenches] * len(runs), tell)
-    component, amount = wrenches[int(np.argmin(coarse.min(axis=0)))]
-    same = [k for k, (c, other) in enumerate(wrenches) if c == component and other * amount > 0.0]
-    found = coarse[:, same].min(axis=1)
-    at = np.array([wrenches[k][1] for k in same])[coarse[:, same].argmin(axis=1)]
-    for halving in range(1, _HALVINGS + 1):
-        step = 2.0 ** (0.5**halving)
-        beside = np.column_stack([at / step, at * step])
-        tried = _left(comparison, residual, trial, runs, [[(component, one) for one in row] for row in beside], tell)
-        nearest = tried.argmin(axis=1)
-        better = tried.min(axis=1) < found
-        at = np.where(better, beside[np.arange(len(runs)), nearest], at)
-        found = np.where(better, tried.min(axis=1), found)
-    return np.asarray(np.minimum(found, coarse.min(axis=1)), dtype=np.float64)
+class _Runs:
+    """Runs of one trial with a wrench in the last window of their pieces.
+
+    Parameters
+    ----------
+    comparison, residual, trial
+        As in `lacks_at_place`.
+    total
+        How many there will be at most.
+    tell
+        Is told the phase, how much of it is done, and of how much.
+    """
+
+    def __init__(self, comparison: Comparison, residual: Residual, trial: int, total: int, tell: OnPhase) -> None:
+        self.comparison, self.residual, self.trial, self.total, self.tell = comparison, residual, trial, total, tell
+        self.done = 0
+
+    def left(self, those: Sequence[tuple[Pieces, int, float]]) -> Floats:
+        """Return what the model leaves with each wrench, a component and how much of it; infinite if it cannot run."""
+        prior = prior_sigma(self.comparison.simulator.nominal(self.trial))
+        left = np.full(len(those), np.inf)
+        for first in range(0, len(those), _AT_ONCE):
+            self.tell("in which place something is missing", min(self.done, self.total), self.total)
+            jobs = []
+            for pieces, component, amount in those[first : first + _AT_ONCE]:
+                wrench = np.zeros((pieces.count, 6))
+                wrench[-1, component] = amount * prior[component]
+                jobs.append(Job(self.trial, edit=added(pieces, wrench)))
+            for k, path in enumerate(self.comparison.simulator.run(jobs), first):
+                if path is not None:
+                    values = self.comparison.differences(self.trial, path, self.residual)
+                    left[k] = left_by(self.comparison, self.residual, self.trial, path, values)
+            self.done += len(jobs)
+        return left
 
 
-def _left(
-    comparison: Comparison,
-    residual: Residual,
-    trial: int,
-    runs: Sequence[Pieces],
-    wrenches: Sequence[Sequence[tuple[int, float]]],
-    tell: OnPhase,
-) -> Floats:
-    """Return what the model leaves with each of its wrenches in the last window of each run, shape (runs, wrenches)."""
-    prior = prior_sigma(comparison.simulator.nominal(trial))
-    left = np.full((len(runs), len(wrenches[0])), np.inf)
-    for n, (pieces, those) in enumerate(zip(runs, wrenches, strict=True)):
-        tell("in which place something is missing", n, len(runs))
-        jobs = []
-        for component, amount in those:
-            wrench = np.zeros((pieces.count, 6))
-            wrench[-1, component] = amount * prior[component]
-            jobs.append(Job(trial, edit=added(pieces, wrench)))
-        for k, path in enumerate(comparison.simulator.run(jobs)):
-            if path is not None:
-                values = comparison.differences(trial, path, residual)
-                left[n, k] = left_by(comparison, residual, trial, path, values)
-    return left
+def _left_at_best(runs: _Runs, families: Sequence[tuple[Sequence[Pieces], Sequence[float]]]) -> list[Floats]:
+    """Return what the model leaves with the best wrench in each run of each family, shape (runs,).
+
+    Parameters
+    ----------
+    runs
+        Of the trial.
+    families
+        Pieces, and the amounts that are tried of each component and direction first.
+    """
+    tables, wanted = [], set[tuple[int, float]]()
+    for family, amounts in families:
+        wrenches = [(c, sign, amount) for c, sign, amount in product(_COMPONENTS, (-1.0, 1.0), amounts)]
+        table = runs.left([(pieces, c, sign * amount) for pieces in family for c, sign, amount in wrenches])
+        tables.append(table.reshape(len(family), len(_COMPONENTS), 2, len(amounts)))
+        if len(family):
+            wanted.add(wrenches[int(tables[-1].reshape(len(family), -1).min(axis=0).argmin())][:2])
+    found = []
+    for (family, amounts), table in zip(families, tables, strict=True):
+        best = table.min(axis=(1, 2, 3))
+        for component, sign in sorted(wanted):
+            mine = table[:, _COMPONENTS.index(component), int(sign > 0.0)]
+            left, at = mine.min(axis=1), np.array(amounts)[mine.argmin(axis=1)]
+            for halving in range(1, _HALVINGS + 1):
+                beside = at[:, None] * 2.0 ** (np.array([-1.0, 1.0]) * 0.5**halving)
+                those = [(p, component, sign * one) for p, row in zip(family, beside, strict=True) for one in row]
+                tried = runs.left(those).reshape(-1, 2)
+                better = tried.min(axis=1) < left
+                at = np.where(better, beside[np.arange(len(family)), tried.argmin(axis=1)], at)
+                left = np.minimum(left, tried.min(axis=1))
+            best = np.minimum(best, left)
+        found.append(np.asarray(best, dtype=np.float64))
+    return found
