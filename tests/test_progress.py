@@ -26,7 +26,7 @@ def test_a_log_gets_a_plain_line_every_ten_seconds(clock: list[float], capsys: p
             clock[0] += 1.0
     said = capsys.readouterr()
     assert said.out == ""
-    assert said.err == "tumblers: 10 s, cases 10/40\ntumblers: 20 s, cases 20/40\ntumblers: 30 s, cases 30/40\n"
+    assert said.err == "tumblers: cases 10/40, 10 s\ntumblers: cases 20/40, 20 s\ntumblers: cases 30/40, 30 s\n"
 
 
 def test_a_log_gets_no_line_of_what_is_over_at_once(clock: list[float], capsys: pytest.CaptureFixture[str]) -> None:
@@ -46,7 +46,7 @@ def test_phases_are_named_every_ten_seconds(clock: list[float], capsys: pytest.C
         tell("fitting each effect", 4, 19)
         clock[0] += 10.0
         tell("fitting pairs", 1, 4)
-    assert capsys.readouterr().err == "tumblers: 10 s, fitting each effect 3/19\ntumblers: 20 s, fitting pairs 1/4\n"
+    assert capsys.readouterr().err == "tumblers: fitting each effect 3/19, 10 s\ntumblers: fitting pairs 1/4, 20 s\n"
 
 
 def test_phases_go_to_a_callback_or_nowhere(capsys: pytest.CaptureFixture[str]) -> None:

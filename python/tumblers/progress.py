@@ -123,7 +123,7 @@ def _lines(console: Console) -> OnPhase:
         if now < due:
             return
         due = now + _BETWEEN_LINES_S
-        console.file.write(f"tumblers: {now - begun:.0f} s, {phase} {done}/{total}\n")
+        console.file.write(f"tumblers: {phase} {done}/{total}, {now - begun:.0f} s\n")
         console.file.flush()
 
     return tell
