@@ -54,7 +54,7 @@ ANSWER: dict[str, Any] = {
             "name": "viscous_drag",
             "form": "catalogue",
             "form_seed": None,
-            "parameters": {"factor": 1.5},
+            "parameters": {"viscosity_Pa_s": 2e-3},
             "strength_sigma": 3.0,
         }
     ],
