@@ -325,6 +325,7 @@ FORMS: dict[str, tuple[str, Callable[[Effect, np.random.Generator], Law]]] = {
 _PAST: dict[tuple[str, str], Callable[[Effect, np.random.Generator], Law]] = {
     ("friction_coefficient", "drifts_with_time"): FrictionDrift
 }
+_KNOWN = {(name, form): law for name, (form, law) in FORMS.items()} | _PAST
 
 
 def law_of(effect: Effect, form: str, form_seed: int | None) -> Law:
@@ -346,8 +347,7 @@ def law_of(effect: Effect, form: str, form_seed: int | None) -> Law:
     """
     if form == "catalogue":
         return EffectLaw(effect)
-    known = dict([FORMS[effect.name]] if effect.name in FORMS else [])
-    known |= {past: law for (name, past), law in _PAST.items() if name == effect.name}
+    known = {known: law for (name, known), law in _KNOWN.items() if name == effect.name}
     if form not in known:
         raise InputError(f"{effect.name}.form", show(form), " or ".join(["catalogue", *known]))
     return known[form](effect, np.random.default_rng(form_seed))
