@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from html import escape
+from itertools import groupby
 from math import isfinite
+from operator import itemgetter
 
 from ..page import bar, data_table, figure, grid, listed, page, section, text
 from .condition import condition_of
@@ -47,10 +49,10 @@ def report_html(diagnosis: Diagnosis) -> str:
         ("again", "To repeat it", _again(diagnosis)),
     ]
     links = "".join(f'<a href="#{anchor}">{escape(words)}</a>' for anchor, words, content in sections if content)
-    said, last = "", ""
-    for label, words in points(diagnosis, whole=True):
-        said += ("" if label == last else f"<dt>{escape(label)}</dt>") + f"<dd>{escape(words)}</dd>\n"
-        last = label
+    said = "".join(
+        f"<dt>{escape(label)}</dt>" + "".join(f"<dd>{escape(words)}</dd>\n" for _, words in those)
+        for label, those in groupby(points(diagnosis, whole=True), key=itemgetter(0))
+    )
     body = (
         f"<h1>Diagnosis: {escape(title)}</h1>\n"
         f'<p class="verdict {diagnosis.verdict}"><b>{_VERDICTS[diagnosis.verdict]}</b>'

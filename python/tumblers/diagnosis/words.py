@@ -400,8 +400,9 @@ def _ruled_out(diagnosis: Diagnosis, most: int | None) -> Iterator[str]:
 
 def _next(label: str, before: str, proposed: NextTrial) -> list[tuple[str, str]]:
     """Return what a trial tells apart, and on a line of its own what each effect says of it."""
-    reason, _, foretold = reason_words(proposed.why).partition(": ")
-    tells = f"{before}{condition_of_table(proposed.trial)}: {reason}."
-    lines = [tells, *(f"{says}." for says in foretold.split("; ") if says)]
+    # Before titles take the place of names, in which there may be any sign.
+    reason, _, foretold = proposed.why.partition(": ")
+    tells = f"{before}{condition_of_table(proposed.trial)}: {reason_words(reason)}."
+    lines = [tells, *(f"{reason_words(says)}." for says in foretold.split("; ") if says)]
     lines.append(f"expected information over all of them: {rounded(proposed.information_bits)} bit.")
     return [(label, line) for line in lines]
