@@ -268,6 +268,13 @@ def test_a_pair_whose_first_effect_hardly_shows_is_none(
     assert (None if sized is None else len(sized)) == count
 
 
+@pytest.fixture(scope="module")
+def world() -> draw._World:
+    found = draw._draw_world(np.random.default_rng(3))
+    assert found is not None
+    return found
+
+
 def test_a_pair_that_shows_clearly_beside_each_other_is_taken_before_one_that_does_not(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -288,9 +295,9 @@ def test_a_pair_that_shows_clearly_beside_each_other_is_taken_before_one_that_do
     assert draw._draw(about, np.random.default_rng(0), 0) == [3.0, 9.0]
 
 
-def test_two_causes_that_cannot_be_at_work_together_show_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    world = draw._draw_world(np.random.default_rng(3))
-    assert world is not None
+def test_two_causes_that_cannot_be_at_work_together_show_nothing(
+    world: draw._World, monkeypatch: pytest.MonkeyPatch
+) -> None:
 
     def diverges(*_rest: Any) -> list[Scene]:
         raise ArithmeticError("diverged")
@@ -325,9 +332,7 @@ def sized_pair(
     return draw._sizes(world, "two", names, (False, False), 9.0, rng)  # type: ignore[arg-type]
 
 
-def test_beside_what_does_nothing_a_cause_shows_as_much_as_alone() -> None:
-    world = draw._draw_world(np.random.default_rng(3))
-    assert world is not None
+def test_beside_what_does_nothing_a_cause_shows_as_much_as_alone(world: draw._World) -> None:
     drag = EffectLaw(get("viscous_drag").from_vector([2e-2]))
     nothing = EffectLaw(get("magnetization_strength").from_vector([1.0]))
     alone = world.strength([drag])
@@ -337,9 +342,7 @@ def test_beside_what_does_nothing_a_cause_shows_as_much_as_alone() -> None:
     assert world.beside([nothing, drag]) == [0.0, alone.sigma]
 
 
-def test_what_an_error_of_a_number_does_beside_another_cause_is_not_what_a_cause_shows() -> None:
-    world = draw._draw_world(np.random.default_rng(3))
-    assert world is not None
+def test_what_an_error_of_a_number_does_beside_another_cause_is_not_what_a_cause_shows(world: draw._World) -> None:
     drag = EffectLaw(get("viscous_drag").from_vector([2e-2]))
     # As much as a standard deviation of the nominal number, which is taken out of what a cause shows.
     stronger = EffectLaw(get("magnetization_strength").from_vector([1.0 + NUMBERS]))
@@ -349,10 +352,8 @@ def test_what_an_error_of_a_number_does_beside_another_cause_is_not_what_a_cause
     assert world.beside([drag, stronger])[1] < 1e-4 * with_nothing_taken_out
 
 
-def test_laws_stay_in_their_order_beside_each_other() -> None:
+def test_laws_stay_in_their_order_beside_each_other(world: draw._World) -> None:
     """A coil's roll-off finds no rotating field where another law has made a table of it."""
-    world = draw._draw_world(np.random.default_rng(3))
-    assert world is not None
     distorted = law_of(get("field_ellipticity").from_vector([0.9, 5.0]), "third_harmonic", 3)
     slow = EffectLaw(get("field_rolloff").from_vector([5e-3]))
     last, first = world.beside([distorted, slow]), world.beside([slow, distorted])
@@ -360,9 +361,9 @@ def test_laws_stay_in_their_order_beside_each_other() -> None:
     assert min(last[0], *first) > 0.1
 
 
-def test_another_step_is_no_excuse_for_numbers_that_are_off(monkeypatch: pytest.MonkeyPatch) -> None:
-    world = draw._draw_world(np.random.default_rng(3))
-    assert world is not None
+def test_another_step_is_no_excuse_for_numbers_that_are_off(
+    world: draw._World, monkeypatch: pytest.MonkeyPatch
+) -> None:
     scenes, weaker = draw._World.scenes, replace(world.jitter, field=0.5 * world.jitter.field)
 
     def another(self: draw._World, *rest: Any, finer: float = 1.0) -> list[Scene]:
