@@ -31,7 +31,7 @@ fn by_contact_mode(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// A whole run of 2000 steps, transitions included, verified and as rollouts have it.
+/// A whole run of 2000 steps, transitions included, verified and as the rollouts of a diagnosis have it.
 fn whole_runs(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("run of 2000 steps");
     let trials = [

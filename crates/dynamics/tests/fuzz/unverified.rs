@@ -61,7 +61,7 @@ fn what_is_taken_on_its_word_would_have_been_verified() {
     assert!(STEPS_PER_LOOSE * loose <= steps, "{loose} of {steps} steps differ");
 }
 
-/// However wild: no number that is not finite without a word, and no step of any length of time without an end.
+/// However wild: no number that is not finite without a word.
 #[test]
 fn wild_steps_on_their_word_stay_finite_or_say_so() {
     let seeds = (0..).map(|i| 8 * SEEDS_APART + i);
