@@ -84,6 +84,11 @@ REFUSED = [
     (", sigma_m_per_s = 0.001", "", "trial[1].outcome.sigma_m_per_s", "no such key beside mean_speed_m_per_s"),
     ("mean_speed_m_per_s = 0.03, ", "", "trial[1].outcome.mean_speed_m_per_s", "no such key beside sigma_m_per_s"),
     ("sigma_m_per_s = 0.001", "sigma_m_per_s = 0", "trial[1].outcome.sigma_m_per_s", "greater than 0"),
+    ("mean_speed_m_per_s = 0.03", "mean_speed_m_per_s = 30.1", "trial[1].outcome.mean_speed_m_per_s", "at most 10"),
+    ("mean_speed_m_per_s = 0.03", "mean_speed_m_per_s = -1e308", "trial[1].outcome.mean_speed_m_per_s", "at least -10"),
+    ("sigma_m_per_s = 0.001", "sigma_m_per_s = 1e-200", "trial[1].outcome.sigma_m_per_s", "at least 1e-12"),
+    ("sigma_m_per_s = 0.001", "sigma_m_per_s = 1e200", "trial[1].outcome.sigma_m_per_s", "at most 10"),
+    (OUTCOME, "{ tilt_deg = 5, sigma_deg = 1e-200 }", "trial[1].outcome.sigma_deg", "at least 1e-12"),
     (OUTCOME, "{ tilt_deg = 5 }", "trial[1].outcome.sigma_deg", "its standard deviation"),
     (OUTCOME, "{ tilt_deg = 95, sigma_deg = 1 }", "trial[1].outcome.tilt_deg", "at most 90"),
     (OUTCOME, "{ tilt_deg = -95, sigma_deg = 1 }", "trial[1].outcome.tilt_deg", "at least -90"),
@@ -160,6 +165,18 @@ def test_a_row_may_be_half_a_frame_outside(folder: Path, time: float, loads: boo
         assert dataset.load(folder).trials[0].track is not None
     else:
         with pytest.raises(InputError, match=rf"trial\[0\]\.track: found a row at {time} s"):
+            dataset.load(folder)
+
+
+@pytest.mark.parametrize(("time", "loads"), [(-0.19, True), (-0.21, False), (2.19, True), (2.21, False)])
+def test_a_row_may_be_outside_by_what_the_clock_may_be_off(folder: Path, time: float, loads: bool) -> None:
+    times = sorted([0.5, 0.55, 0.6, 0.65, time])
+    (folder / "tracks" / "f05.csv").write_text("time_s,x_m\n" + "".join(f"{t},0\n" for t in times))
+    (folder / "dataset.toml").write_text(TEXT.replace("[sensor]", "[sensor]\ntime_offset_s = 0.2"))
+    if loads:
+        assert dataset.load(folder).trials[0].track is not None
+    else:
+        with pytest.raises(InputError, match=rf"trial\[0\]\.track: found a row at {time} s.* give or take 200 ms"):
             dataset.load(folder)
 
 

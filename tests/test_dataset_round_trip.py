@@ -54,10 +54,10 @@ def outcomes(draw: st.DrawFn, rests: bool) -> Outcome:
     speed, tilt = draw(st.booleans()), rests and draw(st.booleans())
     return Outcome(
         climbs=draw(st.booleans() if speed or tilt else st.just(False)),
-        mean_speed_m_per_s=draw(VALUE) if speed else None,
-        sigma_m_per_s=draw(POSITIVE) if speed else None,
+        mean_speed_m_per_s=draw(PLACE) if speed else None,
+        sigma_m_per_s=draw(NOISE) if speed else None,
         tilt_deg=draw(st.floats(-90, 90)) if tilt else None,
-        sigma_deg=draw(POSITIVE) if tilt else None,
+        sigma_deg=draw(NOISE) if tilt else None,
     )
 
 

@@ -46,7 +46,8 @@ class Dataset:
     Raises
     ------
     InputError
-        A part of the wrong type, a robot without a body, no trials, or two of the same id.
+        A part of the wrong type, a robot without a body, no trials, two of the same id, or a track
+        with rows outside its trial by more than the clock may be off.
     """
 
     robot: Robot
@@ -76,6 +77,7 @@ class Dataset:
                     f"trial[{i}].id", f"{show(trial.id)} again", f"another id than trial[{first[trial.id]}]"
                 )
             first[trial.id] = i
+            trial.covers_track(f"trial[{i}].track", self.sensor)
         switches = [f.name for f in fields(Model)]
         for name in self.model_given:
             if name not in switches:

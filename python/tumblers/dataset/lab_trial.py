@@ -12,6 +12,7 @@ from ..model import Model
 from ..run import Run
 from ..scenario import Scenario
 from .outcome import Outcome
+from .sensor import Sensor
 from .track import Track
 
 if TYPE_CHECKING:
@@ -48,8 +49,8 @@ class LabTrial:
     Raises
     ------
     InputError
-        A number that is refused, a tabulated field that does not cover the trial, rows of the track that are outside
-        the trial by more than half a frame, no observation, or an angle at rest in a rotating field.
+        A number that is refused, a tabulated field that does not cover the trial, no observation, or an angle at rest
+        in a rotating field.
     """
 
     id: str
@@ -83,15 +84,31 @@ class LabTrial:
         if self.outcome is not None and self.outcome.tilt_deg is not None and isinstance(self.field, RotatingField):
             expected = "a static field or a table, in which the robot comes to rest"
             raise InputError("trial.outcome.tilt_deg", f"{show(self.outcome.tilt_deg)} in a rotating field", expected)
-        if self.track is not None and self.track.time_s.size:
-            self._covers(self.track)
 
-    def _covers(self, track: Track) -> None:
-        slack = max(_SLACK_S, _SLACK_FRAMES * track.frame_interval_s) if track.time_s.size > 1 else _SLACK_S
-        for time in (float(track.time_s[0]), float(track.time_s[-1])):
+    def covers_track(self, key: str, sensor: Sensor) -> None:
+        """Refuse a track with rows outside the trial by more than the clock may be off.
+
+        Parameters
+        ----------
+        key
+            What the track is called in the error.
+        sensor
+            Whose clock it is. Half a frame and 5 ms are never too much.
+
+        Raises
+        ------
+        InputError
+            A row that is too early or too late.
+        """
+        if self.track is None or not self.track.time_s.size:
+            return
+        slack = max(_SLACK_S, sensor.time_offset_s or 0.0)
+        if self.track.time_s.size > 1:
+            slack = max(slack, _SLACK_FRAMES * self.track.frame_interval_s)
+        for time in (float(self.track.time_s[0]), float(self.track.time_s[-1])):
             if not -slack <= time <= self.duration_s + slack:
-                expected = f"times from 0 s to duration_s, {self.duration_s:g} s, give or take half a frame"
-                raise InputError("trial.track", f"a row at {time:g} s", expected)
+                expected = f"times from 0 s to duration_s, {self.duration_s:g} s, give or take {1e3 * slack:.3g} ms"
+                raise InputError(key, f"a row at {time:g} s", expected)
 
     def scenario(
         self, dataset: Dataset, step_s: float, *, model: Model | None = None, output_every_s: float | None = None

@@ -13,6 +13,9 @@ __all__ = ["REST_SHARE", "Outcome"]
 REST_SHARE = 1.0 / 3.0
 
 _SIGMAS = {"mean_speed_m_per_s": "sigma_m_per_s", "tilt_deg": "sigma_deg"}
+# What is beyond these is in another unit, m/s and degrees; no measurement is surer than the least.
+_MOST = {"mean_speed_m_per_s": 10.0, "tilt_deg": 90.0, "sigma_m_per_s": 10.0, "sigma_deg": 360.0}
+_LEAST_SIGMA = 1e-12
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -51,11 +54,10 @@ class Outcome:
                 if getattr(self, sigma) is not None:
                     raise InputError(f"outcome.{name}", f"no such key beside {sigma}", name)
                 continue
-            put(name, number(f"outcome.{name}", getattr(self, name)))
+            put(name, number(f"outcome.{name}", getattr(self, name), least=-_MOST[name], most=_MOST[name]))
             if getattr(self, sigma) is None:
                 raise InputError(f"outcome.{sigma}", f"no such key beside {name}", "its standard deviation")
-            put(sigma, number(f"outcome.{sigma}", getattr(self, sigma), above=0.0))
-        if self.tilt_deg is not None:
-            number("outcome.tilt_deg", self.tilt_deg, least=-90.0, most=90.0)
+            put(sigma, number(f"outcome.{sigma}", getattr(self, sigma), above=0.0, most=_MOST[sigma]))
+            number(f"outcome.{sigma}", getattr(self, sigma), least=_LEAST_SIGMA)
         if self.climbs is None and self.mean_speed_m_per_s is None and self.tilt_deg is None:
             raise InputError("outcome", "no observation", "climbs, mean_speed_m_per_s or tilt_deg")
