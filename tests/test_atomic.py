@@ -86,3 +86,12 @@ def test_where_one_file_cannot_be_written_none_is(tmp_path: Path) -> None:
         write_files({tmp_path / "one.nc": b"after", tmp_path / "none" / "two.nc": b"after"})
     assert names(tmp_path) == {"one.nc"}
     assert (tmp_path / "one.nc").read_bytes() == b"before"
+
+
+def test_a_folder_in_the_way_of_one_leaves_the_others_as_they_were(tmp_path: Path) -> None:
+    (tmp_path / "one.nc").write_bytes(b"before")
+    (tmp_path / "two.nc").mkdir()
+    with pytest.raises(IsADirectoryError, match=r"two\.nc"):
+        write_files({tmp_path / "one.nc": b"after", tmp_path / "two.nc": b"after"})
+    assert (tmp_path / "one.nc").read_bytes() == b"before"
+    assert names(tmp_path) == {"one.nc", "two.nc"}

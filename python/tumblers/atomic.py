@@ -6,6 +6,7 @@ import os
 import re
 from collections.abc import Iterable, Mapping
 from contextlib import ExitStack, suppress
+from errno import EISDIR
 from pathlib import Path
 from platform import node
 from uuid import uuid4
@@ -30,8 +31,12 @@ def write_files(contents: Mapping[Path, bytes | memoryview]) -> None:
     Raises
     ------
     OSError
-        A folder that is missing or cannot be written to, or a full disk.
+        A folder that is missing or cannot be written to, a full disk, or a folder that has a file's name.
     """
+    for path in contents:
+        # Found out after others have taken their names, it would be too late.
+        if path.is_dir():
+            raise IsADirectoryError(EISDIR, os.strerror(EISDIR), str(path))
     _remove_abandoned(contents)
     temporaries = {path: _unfinished(path) for path in contents}
     with ExitStack() as stack:

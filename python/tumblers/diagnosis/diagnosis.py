@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, fields, replace
 from math import isfinite
 from os import PathLike
@@ -251,7 +252,9 @@ class Diagnosis:
             write_files({folder / name: text.encode() for name, text in zip(FILES, texts, strict=True)})
         except BaseException:
             if new:
-                folder.rmdir()
+                # What has taken its name already stays in it.
+                with suppress(OSError):
+                    folder.rmdir()
             raise
 
 
