@@ -273,6 +273,22 @@ def test_records_come_back_as_they_were_written(tmp_path: Path) -> None:
         ("answers.json", "[]", "expected 'tumblers-answers/1'"),
         ("dataset-000/seal.json", '{"format": "tumblers-seal/1"}', "not the sealed one"),
         ("dataset-000/diagnosis.json", '{"format": "other"}', "expected 'tumblers-diagnosis/1'"),
+        ("dataset-000/diagnosis.json", '{"format": "tumblers-diagnosis/1"}', "verdict: found no such key"),
+        (
+            "dataset-000/diagnosis.json",
+            '{"format": "tumblers-diagnosis/1", "verdict": "explained", "effects": [{"name": 5}]}',
+            r"effects\[0\]\.name: found 5, expected a text",
+        ),
+        (
+            "dataset-000/run.json",
+            '{"format": "tumblers-blind-run/1", "seconds": "x", "threads": 1, "version": "0"}',
+            "seconds: found 'x', expected a number",
+        ),
+        (
+            "dataset-000/repeat.json",
+            '{"format": "tumblers-blind-repeat/1", "seconds": 5, "threads": 4, "cores": 2, "same": 1}',
+            "same: found 1, expected true or false",
+        ),
     ],
 )
 def test_files_are_refused_in_one_line(file: str, text: str, found: str, tmp_path: Path) -> None:
@@ -282,6 +298,14 @@ def test_files_are_refused_in_one_line(file: str, text: str, found: str, tmp_pat
         read_records(tmp_path, answers)
     assert "\n" not in str(refused.value)
     assert refused.value.file is not None
+
+
+def test_a_dataset_has_one_answer(tmp_path: Path) -> None:
+    answers = write(tmp_path, answer("none"))
+    table = json.loads(answers.read_text())
+    answers.write_text(json.dumps({**table, "answers": table["answers"] * 2}))
+    with pytest.raises(InputError, match="found 'dataset-000' again"):
+        read_records(tmp_path, answers)
 
 
 @pytest.mark.parametrize(

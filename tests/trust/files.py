@@ -67,6 +67,38 @@ ANSWER: dict[str, Any] = {
     "jitter_sigma": 0.1,
 }
 
+DIAGNOSIS: dict[str, Any] = {
+    "format": "tumblers-diagnosis/1",
+    "verdict": "explained",
+    "effects": [
+        {
+            "name": "viscous_drag",
+            "probability": 0.9,
+            "parameters": {"viscosity_Pa_s": {"estimate": 2.1e-3, "low": 1e-3, "high": None, "identified": True}},
+            "confounded_with": ["eddy_current_drag"],
+        }
+    ],
+    "ranking": [{"effects": ["viscous_drag"], "probability": 0.9, "held_out_gap": 1.0, "shrink": 0.9}],
+    "gap": {
+        "noise_floor": 1.0,
+        "before": 3.0,
+        "after_nuisance_only": 2.5,
+        "after": 1.1,
+        "shrink": {"estimate": 0.95, "low": 0.9, "high": 1.0},
+        "held_out_trials": ["f05"],
+    },
+    "where": [
+        {"axis": "trial", "value": "f05", "share_of_gap": 0.9},
+        {"axis": "time", "low": 0.0, "high": 1.0, "share_of_gap": 0.5},
+    ],
+}
+RUN: dict[str, Any] = {
+    "format": "tumblers-blind-run/1", "version": "0.1.0", "seconds": 12.5, "threads": 1, "error": None,
+}  # fmt: skip
+REPEAT: dict[str, Any] = {
+    "format": "tumblers-blind-repeat/1", "version": "0.1.0", "seconds": 9.5, "threads": 4, "cores": 2, "same": True,
+}  # fmt: skip
+
 # Values that a file may have in the place of any other.
 NASTY = [
     "", "nan", "-inf", "1e400", "-1e-400", "5e-324", "1.7976931348623157e308", "0", "-0.0", "true", "[]", "{}",

@@ -19,10 +19,12 @@ from hypothesis import strategies as st
 from tumblers import InputError, Scenario, dataset
 from tumblers.blind.answer import seal
 from tumblers.blind.make import ANSWERS_FORMAT, SEAL
+from tumblers.blind.page import page_of
 from tumblers.blind.records import read_records
+from tumblers.blind.score import Scores, score_records
 
 from ..dataset_folder import write_dataset
-from .files import ANSWER, DATASET, FIELD, SCENARIO, TRACK, mutated
+from .files import ANSWER, DATASET, DIAGNOSIS, FIELD, REPEAT, RUN, SCENARIO, TRACK, mutated
 
 # `TUMBLERS_FUZZ_EXAMPLES=5000` for the long run.
 EXAMPLES = int(os.environ.get("TUMBLERS_FUZZ_EXAMPLES", "60"))
@@ -166,6 +168,40 @@ def test_the_answers_that_are_mutated_are_sound(tmp_path: Path) -> None:
     sealed(tmp_path, answers({"dataset": "dataset-000", "salt": "abc", "answer": ANSWER}))
     seed, records = read_records(tmp_path, tmp_path / "answers.json")
     assert (seed, records[0].truth) == (3, ("viscous_drag",))
+
+
+WRITTEN = {"diagnosis.json": DIAGNOSIS, "run.json": RUN, "repeat.json": REPEAT}
+
+
+def diagnosed(folder: Path) -> Path:
+    """Write what there is of one dataset, all of it sound, and return the dataset's folder."""
+    sealed(folder, answers({"dataset": "dataset-000", "salt": "abc", "answer": ANSWER}))
+    for name, table in WRITTEN.items():
+        (folder / "dataset-000" / name).write_text(json.dumps(table, indent=1))
+    return folder / "dataset-000"
+
+
+def score(folder: Path) -> Scores:
+    """Score a folder, its ties not simulated, and write the page."""
+    seed, records = read_records(folder, folder / "answers.json")
+    scores = score_records(records, seed, lambda _: 0.0)
+    page_of(scores)
+    return scores
+
+
+@pytest.mark.parametrize("name", WRITTEN)
+@fuzz
+@given(data=st.data())
+def test_any_diagnosis_is_scored_or_refused(tmp_path: Path, name: str, data: st.DataObject) -> None:
+    file = diagnosed(tmp_path) / name
+    file.write_bytes(data.draw(mutated(json.dumps(WRITTEN[name], indent=1))))
+    is_sound_or_refused(lambda: score(tmp_path), tmp_path, file)
+
+
+def test_the_diagnosis_that_is_mutated_is_sound(tmp_path: Path) -> None:
+    diagnosed(tmp_path)
+    scores = score(tmp_path)
+    assert (scores.drawn, scores.explained.hits) == (1, 1)
 
 
 # Named: what the fuzz, or reading the readers beside it, has found. Each was another exception or no end.

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from ..diagnosis.diagnosis import FORMAT
-from ..errors import InputError, show, unreadable
+from ..errors import InputError, show
 from .answer import Answer, seal
 from .forms import law_of
 from .make import ANSWERS_FORMAT, SEAL, SEAL_FORMAT
 from .repeat import REPEAT_FORMAT
 from .run import DIAGNOSIS, RECORD, RECORD_FORMAT, REPEAT
 from .ties import effect_of
+from .written import FLAG, NUMBER, TEXT, read_diagnosis, read_table, read_timing
 
 __all__ = ["Record", "read_records"]
 
@@ -88,11 +87,12 @@ def read_records(directory: str | PathLike[str], answers: str | PathLike[str]) -
     Raises
     ------
     InputError
-        A file that is no such file, a dataset without an answer or a seal, an answer that is not the sealed one, causes
-        that are not as many as the kind says, or one that cannot be at work again.
+        A file that is no such file or not as it was written, a dataset without an answer or a seal or with two answers,
+        an answer that is not the sealed one, causes that are not as many as the kind says, or one that cannot be at
+        work again.
     """
     directory, answers = Path(directory), Path(answers)
-    table = _json(answers, ANSWERS_FORMAT)
+    table = read_table(answers, ANSWERS_FORMAT)
     try:
         entries = [(entry["dataset"], entry["salt"], entry["answer"]) for entry in table["answers"]]
         seed = int(table["seed"])
@@ -102,6 +102,8 @@ def read_records(directory: str | PathLike[str], answers: str | PathLike[str]) -
         ) from None
     names = [name for name, _, _ in entries]
     for name in names:
+        if names.count(name) > 1:
+            raise InputError("answers", f"{show(name)} again", "one answer for every dataset", answers)
         # A path could lead out of the folder.
         if not isinstance(name, str) or name in ("", ".", "..") or Path(name).name != name:
             raise InputError("answers", f"the dataset {show(name)}", "the name of a folder of datasets", answers)
@@ -114,7 +116,7 @@ def read_records(directory: str | PathLike[str], answers: str | PathLike[str]) -
 
 
 def _record(folder: Path, salt: object, answer: object, answers: Path) -> Record:
-    sealed = _json(folder / SEAL, SEAL_FORMAT)
+    sealed = read_table(folder / SEAL, SEAL_FORMAT)
     if not isinstance(salt, str) or not isinstance(answer, dict) or not _is_sealed(sealed, salt, answer):
         raise InputError(folder.name, "an answer that is not the sealed one", f"that of {folder / SEAL}", answers)
     try:
@@ -124,9 +126,9 @@ def _record(folder: Path, salt: object, answer: object, answers: Path) -> Record
         raise InputError(f"{folder.name}.{error.key}", error.found, error.expected, answers) from None
     except (AttributeError, KeyError, OverflowError, TypeError, ValueError):
         raise InputError(folder.name, show(answer), "an answer of this version", answers) from None
-    diagnosis = _json(folder / DIAGNOSIS, FORMAT) if (folder / DIAGNOSIS).exists() else None
-    run = _json(folder / RECORD, RECORD_FORMAT) if (folder / RECORD).exists() else {}
-    again = _json(folder / REPEAT, REPEAT_FORMAT) if (folder / REPEAT).exists() else {}
+    diagnosis = read_diagnosis(folder / DIAGNOSIS) if (folder / DIAGNOSIS).exists() else None
+    run = read_timing(folder / RECORD, RECORD_FORMAT, {"version": TEXT})
+    again = read_timing(folder / REPEAT, REPEAT_FORMAT, {"cores": NUMBER, "same": FLAG})
     return Record(
         dataset=folder.name,
         answer=truth,
@@ -169,17 +171,3 @@ def _is_sealed(sealed: Mapping[str, Any], salt: str, answer: Mapping[str, Any]) 
     except (RecursionError, ValueError):
         # What JSON cannot hold has no seal: NaN, half a character, tables nested too deeply.
         return False
-
-
-def _json(path: Path, version: str) -> dict[str, Any]:
-    try:
-        table = json.loads(path.read_bytes())
-    except OSError as error:
-        raise InputError(None, unreadable(error), f"a {version} file", path) from None
-    except (RecursionError, ValueError):
-        raise InputError(None, "malformed JSON", f"a {version} file", path) from None
-    if not isinstance(table, dict) or table.get("format") != version:
-        raise InputError(
-            "format", show(table.get("format") if isinstance(table, dict) else table), f"'{version}'", path
-        )
-    return table

@@ -380,7 +380,7 @@ def _shrinks(records: Sequence[Record]) -> tuple[float | None, float | None, flo
         ratios = [
             1.0 - (gap[end] - gap["noise_floor"]) / (gap[start] - gap["noise_floor"])
             for gap in gaps
-            if gap[start] > gap["noise_floor"]
+            if gap[start] is not None and gap[end] is not None and gap[start] > gap["noise_floor"]
         ]
         return median(min(max(ratio, 0.0), 1.0) for ratio in ratios) if ratios else None
 
