@@ -14,6 +14,7 @@ from tumblers.diagnosis.wrench import missing_wrench, wrench_regions
 from tumblers.diagnosis.wrench_maps import mapped
 from tumblers.diagnosis.wrench_means import Windows
 from tumblers.diagnosis.wrench_pieces import along, at_rest, within_cycles
+from tumblers.field import TableField
 from tumblers.model import Model
 from tumblers.presets import ROBOTS, SUBSTRATES, drive
 from tumblers.scenario import Scenario
@@ -159,3 +160,33 @@ def test_outcomes_alone_have_no_wrench() -> None:
     comparison = Comparison(bare, Simulator(bare, 1))
     paths = comparison.nominal_paths
     assert missing_wrench(comparison, comparison.residual(paths), paths) is None
+
+
+def table_of(directions: list[tuple[float, float, float]]) -> TableField:
+    return TableField(time_s=tuple(np.linspace(0.0, 1.0, len(directions)).tolist()), field_T=tuple(directions))
+
+
+@pytest.mark.parametrize(
+    ("field", "label"),
+    [
+        (table_of([(0.0, 0.0, 0.0), (0.0, 1e-4, 4e-3), (0.0, 0.0, 8e-3)]), "not rotating"),
+        (
+            table_of([(0.0, 0.01 * np.sin(a), 0.01 * np.cos(a)) for a in np.linspace(0.0, 12.0, 60)]),
+            "turning otherwise",
+        ),
+    ],
+)
+def test_a_table_that_turns_is_not_one_that_does_not(field: TableField, label: str) -> None:
+    dataset = lab(0.0, 5, (1.0,))
+    window = Windows(
+        trial=0,
+        start_s=np.zeros(1),
+        end_s=np.ones(1),
+        mode=("point",),
+        place_y_m=np.zeros(1),
+        wrench=np.ones((1, 6)),
+        information=np.eye(6),
+        prior_sigma=np.ones(6),
+    )
+    trial = replace(dataset.trials[0], field=field, duration_s=1.0, track=None, outcome=Outcome(climbs=True))
+    assert set(mapped(replace(dataset, trials=(trial,)), [window], [window]).by_frequency) == {label}

@@ -75,6 +75,7 @@ _PLACES = {
     "line": "in line contact",
     "surface": "in surface contact",
     "not rotating": "in fields that do not rotate",
+    "turning otherwise": "in fields from a table that turn",
 }
 _OBSERVATIONS = {
     "mean_speed_m_per_s": ("mean speed", "m/s"),

@@ -9,7 +9,7 @@ from math import ceil, inf, log10
 import numpy as np
 
 from ..dataset import Dataset
-from ..field import RotatingField
+from ..field import RotatingField, TableField
 from .cells import MODES
 from .result import MissingWrench, Region
 from .wrench_means import Windows, means
@@ -23,6 +23,8 @@ _PLACES = 6
 _LEAST_M = 1e-6
 _COMPONENTS = ("x", "y", "z")
 _SIGNIFICANT = 3.0
+# A field turns if this share of its strength is ever across its strongest: a logged ramp is not quite straight.
+_ACROSS = 0.1
 
 
 def mapped(dataset: Dataset, windows: Sequence[Windows], phased: Sequence[Windows]) -> MissingWrench:
@@ -54,13 +56,10 @@ def mapped(dataset: Dataset, windows: Sequence[Windows], phased: Sequence[Window
         ]
         for low, high in pairwise(ends)
     }
-    frequencies = {w.trial: _frequency(labs[w.trial].field) for w in windows}
-    names = sorted(set(frequencies.values()))
+    drives = {w.trial: _drive(labs[w.trial].field) for w in windows}
     by_frequency = {
-        (f"{f:g} Hz" if f > 0.0 else "not rotating"): [
-            list(range(len(w.start_s))) if frequencies[w.trial] == f else [] for w in windows
-        ]
-        for f in names
+        drive[1]: [list(range(len(w.start_s))) if drives[w.trial] == drive else [] for w in windows]
+        for drive in sorted(set(drives.values()))
     }
     by_mode = {m: [[k for k, mode in enumerate(w.mode) if mode == m] for w in phased] for m in MODES}
     return MissingWrench(
@@ -102,8 +101,20 @@ def wrench_regions(missing: MissingWrench) -> tuple[Region, ...]:
     return tuple(sorted(regions, key=lambda region: -region.share_of_gap))
 
 
-def _frequency(field: object) -> float:
-    return field.frequency_Hz if isinstance(field, RotatingField) else 0.0
+def _drive(field: object) -> tuple[float, str]:
+    """Return a field's frequency, Hz, where it has one, and what it is called."""
+    if isinstance(field, RotatingField):
+        return field.frequency_Hz, f"{field.frequency_Hz:g} Hz"
+    return 0.0, "turning otherwise" if isinstance(field, TableField) and _turns(field) else "not rotating"
+
+
+def _turns(field: TableField) -> bool:
+    """Return whether a tabulated field is ever across its strongest."""
+    rows = np.array(field.field_T)
+    strength = np.linalg.norm(rows, axis=1)
+    strongest = rows[np.argmax(strength)]
+    across = np.linalg.norm(np.cross(rows, strongest), axis=1)
+    return bool(across.max() > _ACROSS * strength.max() ** 2)
 
 
 def _at_phase(field: object, windows: Windows, centre: float) -> list[int]:
