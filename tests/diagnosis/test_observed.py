@@ -77,3 +77,48 @@ def test_of_a_model_that_slides_counts_what_a_late_camera_sees_of_it() -> None:
         shares.append(reader.outcome_terms(path, np.zeros(2))["slides"])
     fitting = [reached(share, True, border=0.3) for share in (1.0 / 3.0, 1.0 / 6.0, 0.0)]
     assert_allclose(shares, fitting, rtol=1e-6)
+
+
+def tracked(time_s: np.ndarray, channels: dict[str, np.ndarray]) -> Dataset:
+    empty = plan([("still", OFF, 0.0)], duration_s=float(time_s[-1]) + 0.1)
+    track = Track(time_s=time_s, channels=channels)
+    return replace(empty, trials=(replace(empty.trials[0], track=track, outcome=None),))
+
+
+def test_angles_count_where_every_quaternion_was_lost() -> None:
+    lost, tilt = np.full(30, np.nan), np.linspace(0.0, 5.0, 30)
+    quaternions = dict.fromkeys(("qw", "qx", "qy", "qz"), lost)
+    (observed,) = observe(tracked(TIME_S, {**quaternions, "tilt_deg": tilt}))
+    assert observed.channels == ("tilt",)
+    assert_allclose(observed.values["tilt"], np.radians(tilt))
+    assert observed.lost == 0
+
+
+def test_quaternions_take_the_place_of_angles() -> None:
+    whole = {"qw": np.ones(30), **dict.fromkeys(("qx", "qy", "qz"), np.zeros(30))}
+    (observed,) = observe(tracked(TIME_S, {**whole, "tilt_deg": np.full(30, 5.0)}))
+    assert observed.channels == ("tilt", "heading", "twist")
+    assert observed.values == {}
+
+
+def test_neighbours_are_as_far_apart_as_what_is_compared() -> None:
+    # 20 s at 100 frames a second: 160 of 2001 frames are compared.
+    time = np.arange(2001) / 100.0
+    dataset = tracked(time, {"x_m": np.zeros(2001)})
+    (observed,) = observe(dataset)
+    assert len(observed.time_s) == 160
+    assert observed.frame_interval_s == pytest.approx(0.01)
+    assert observed.compared_interval_s == pytest.approx(float(np.mean(np.diff(observed.time_s))), rel=0.01)
+    # What is 0.125 s apart counts as 0.16 s do, not eight for one.
+    assert Comparison(dataset, Simulator(dataset, 1)).alike == pytest.approx(0.16 / 0.125, rel=0.02)
+
+
+def test_neighbours_are_far_apart_where_most_frames_are_lost() -> None:
+    time, x = np.arange(200) / 100.0, np.full(200, np.nan)
+    x[::10] = 0.0
+    (observed,) = observe(tracked(time, {"x_m": x}))
+    assert observed.compared_interval_s == pytest.approx(0.1)
+    x[:] = 0.0
+    x[5] = np.nan
+    (observed,) = observe(tracked(time[:150], {"x_m": x[:150]}))
+    assert observed.compared_interval_s == observed.frame_interval_s

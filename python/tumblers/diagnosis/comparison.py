@@ -221,7 +221,7 @@ class Comparison:
         tracked = [i for i, reader in enumerate(self.readers) if len(reader.observed.time_s)]
         if not tracked:
             return 1.0
-        intervals = [self.readers[i].observed.frame_interval_s for i in tracked]
+        intervals = [self.readers[i].observed.compared_interval_s for i in tracked]
         found = [min(max(_ALIKE_S / interval, 1.0), _MOST_ALIKE) if interval > 0.0 else 1.0 for interval in intervals]
         return float(np.average(found, weights=[max(self.sizes[i], 1) for i in tracked]))
 

@@ -40,11 +40,13 @@ class Observed:
     values
         By channel, shape (n,), NaN where lost: ``x``, ``y``, ``z`` in m, ``tilt`` and ``heading`` in rad.
     orientation
-        Unit quaternions, shape (n, 4), where the track has them; they take the place of ``tilt`` and ``heading``.
+        Unit quaternions, shape (n, 4), where the track has any; they take the place of ``tilt`` and ``heading``.
     noise
         One standard deviation by channel, m or rad.
     frame_interval_s
         Median time between the track's frames, s; 0 without a track.
+    compared_interval_s
+        The same between those that are compared: longer where most are lost, or more than are compared.
     slid_m
         Way that the robot slid without a field, m; 0 where it held, or where there is a field.
     outcome
@@ -59,6 +61,7 @@ class Observed:
     orientation: Floats | None
     noise: dict[str, float]
     frame_interval_s: float
+    compared_interval_s: float
     slid_m: float
     outcome: Outcome | None
     frames: int
@@ -103,14 +106,16 @@ def _observed(dataset: Dataset, trial: LabTrial, length_m: float) -> Observed:
     sensor, track = dataset.sensor, trial.track
     empty = np.empty(0)
     if track is None:
-        return Observed(trial.id, empty, {}, None, {}, 0.0, 0.0, trial.outcome, 0, 0)
+        return Observed(trial.id, empty, {}, None, {}, 0.0, 0.0, 0.0, trial.outcome, 0, 0)
     found = np.zeros(len(track.time_s), dtype=bool)
     for column in track.channels.values():
         found |= np.isfinite(column)
     kept = np.flatnonzero(found)
     if not len(kept):
-        return Observed(trial.id, empty, {}, None, {}, 0.0, 0.0, trial.outcome, len(found), len(found))
+        return Observed(trial.id, empty, {}, None, {}, 0.0, 0.0, 0.0, trial.outcome, len(found), len(found))
+    stride = float(np.median(np.diff(kept))) if len(kept) > 1 else 1.0
     if len(kept) > _MOST_FRAMES:
+        stride *= len(kept) / _MOST_FRAMES
         kept = kept[np.unique(np.linspace(0, len(kept) - 1, _MOST_FRAMES).round().astype(int))]
     columns = {name: np.asarray(column, dtype=np.float64)[kept] for name, column in track.channels.items()}
     slid = 0.0
@@ -127,19 +132,22 @@ def _observed(dataset: Dataset, trial: LabTrial, length_m: float) -> Observed:
     noise |= {"tilt": angle, "heading": angle, "twist": angle}
     values = {name[0]: columns[name] for name in ("x_m", "y_m", "z_m") if name in columns}
     orientation = None
-    if "qw" in columns:
+    # Of quaternions that were lost throughout, only the columns are left.
+    if "qw" in columns and np.isfinite(columns["qw"]).any():
         orientation = np.stack([columns[name] for name in ("qw", "qx", "qy", "qz")], axis=1)
     else:
         for name in ("tilt", "heading"):
             if f"{name}_deg" in columns:
                 values[name] = np.radians(columns[f"{name}_deg"])
+    interval = track.frame_interval_s if len(found) > 1 else 0.0
     return Observed(
         id=trial.id,
         time_s=np.asarray(track.time_s, dtype=np.float64)[kept],
         values=values,
         orientation=orientation,
         noise=noise,
-        frame_interval_s=track.frame_interval_s if len(found) > 1 else 0.0,
+        frame_interval_s=interval,
+        compared_interval_s=stride * interval,
         slid_m=slid,
         outcome=trial.outcome,
         frames=len(track.time_s),
