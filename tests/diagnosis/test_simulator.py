@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,8 @@ from tumblers.effects.camera_calibration import CameraCalibration
 from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.effects.magnetization_strength import MagnetizationStrength
 from tumblers.field import TableField
+from tumblers.model import Model
+from tumblers.presets import drive
 
 from .lab import plan, rollouts_made
 
@@ -91,3 +95,17 @@ def test_a_path_under_a_table_ends_where_the_table_does() -> None:
     (path,) = simulator.run([Job(0)])
     assert path is not None
     assert (len(path.position_m) - 1) * path.interval_s == pytest.approx(0.6)
+
+
+@pytest.mark.parametrize("strength_T", [0.020, 0.025, 0.4])
+def test_a_scheme_that_is_unstable_in_long_steps_is_run_in_shorter_ones(strength_T: float) -> None:
+    fields = [("fast", drive(strength_T, 2.0), 0.0)]
+    dataset = replace(plan(fields, duration_s=0.05), model=Model(magnetic_torque="start_of_step"))
+    simulator = Simulator(dataset, 1)
+    stronger = (MagnetizationStrength(factor=2.0),)
+    for job in (Job(0), Job(0, edit=simulator.coarse), Job(0, edit=simulator.twice), Job(0, stronger)):
+        # In an unstable step the core would refuse to run.
+        assert simulator.scenario(job).trial().stability_bound_s > simulator.scenario(job).run.fixed_step_s
+        assert simulator.run([job])[0] is not None
+    simulator.lengthen_steps()
+    assert simulator.run([Job(0)])[0] is not None

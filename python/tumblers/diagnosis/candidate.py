@@ -91,22 +91,22 @@ class Candidate:
         return others if used else (*others, "slope")
 
     def edit(self, scenario: Scenario) -> Scenario:
-        """Return a scenario under these conditions, its step no longer than the field allows.
+        """Return a scenario under these conditions, its step no longer than they allow.
 
         Parameters
         ----------
         scenario
             Of any trial of the same robot.
         """
-        step = min(scenario.run.fixed_step_s, longest_step_s(self.field))
         run = replace(
             scenario.run,
             duration_s=self.duration_s,
-            step_s=min(step, self.duration_s),
+            step_s=min(scenario.run.fixed_step_s, self.duration_s),
             incline_deg=self.incline_deg,
             output_every_s=None,
         )
-        return replace(scenario, field=self.field, run=run)
+        here = replace(scenario, field=self.field, run=run)
+        return here.at_step(min(run.fixed_step_s, longest_step_s(here)))
 
     def table(self) -> dict[str, Any]:
         """Return the keys of a dataset's ``[[trial]]``; a field's keys at their defaults are left out."""

@@ -28,6 +28,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -300,6 +301,9 @@ def _size(reader: Reader, change: Mapping[str, Floats], terms: Mapping[str, floa
 
 
 def _distance(reader: Reader, path: Path | None, other: Path | None) -> float:
+    """Return what half a step changes, in noise sigmas; without end where the trial runs in the half alone."""
+    if path is None and other is not None:
+        return inf
     return _size(reader, _change(reader, path, other), _outcome_change(reader, path, other))
 
 

@@ -30,6 +30,8 @@ _ROWS_PER_CYCLE = 60
 # The step that is tried first, where a cycle of the field has so many at least; and what is not halved any more.
 LONGEST_STEP_S, SHORTEST_STEP_S = 5.0e-4, 1.25e-4
 _STEPS_PER_CYCLE = 100
+# Of the bound of a scheme that has one, so that a torque of up to four times the nominal one can be run too.
+_STABLE = 0.5
 
 # Time by which runs are made longer for a camera whose clock is late, s.
 _PIECE_S = 0.1
@@ -85,16 +87,22 @@ class Simulator:
         # The lab that does not say how the torque is taken gets the scheme of second order.
         stated = "magnetic_torque" in dataset.model_given
         self.model: Model = dataset.model if stated else replace(dataset.model, magnetic_torque="midpoint")
-        self.step_s = [longest_step_s(trial.field) for trial in dataset.trials]
         self._check()
+        self.step_s = self._longest_s()
         self._nominal: dict[tuple[int, float], Scenario] = {}
         self._known: OrderedDict[Scenario, Path | None] = OrderedDict()
         self._kept = 0
 
+    def _longest_s(self) -> list[float]:
+        """Return the steps that are tried first, s, by trial."""
+        lab = self.dataset
+        return [longest_step_s(t.scenario(lab, longest_in(t.field), model=self.model)) for t in lab.trials]
+
     def _check(self) -> None:
         """Refuse trials that are no longer than a step, or that would take days and fill the memory."""
         trials, offset = self.dataset.trials, self.dataset.sensor.time_offset_s
-        for i, (trial, step) in enumerate(zip(trials, self.step_s, strict=True)):
+        for i, trial in enumerate(trials):
+            step = longest_in(trial.field)
             if trial.duration_s < 2.0 * step:
                 expected = f"at least two steps of the simulation, {2.0 * step:g} s"
                 raise InputError(f"trial[{i}].duration_s", f"{trial.duration_s:g} s", expected)
@@ -163,11 +171,8 @@ class Simulator:
             Any of this dataset's.
         """
         scheme = self.model.magnetic_torque if "magnetic_torque" in self.dataset.model_given else RELEASED_TORQUE
-        return replace(
-            scenario,
-            run=replace(scenario.run, step_s=longest_step_s(scenario.field)),
-            model=replace(scenario.model, magnetic_torque=scheme),
-        )
+        scenario = replace(scenario, model=replace(scenario.model, magnetic_torque=scheme))
+        return scenario.at_step(longest_step_s(scenario))
 
     def twice(self, scenario: Scenario) -> Scenario:
         """Return a scenario in twice its step, but no longer than the longest.
@@ -177,13 +182,12 @@ class Simulator:
         scenario
             Any of this dataset's.
         """
-        step = min(2.0 * scenario.run.fixed_step_s, longest_step_s(scenario.field))
-        return replace(scenario, run=replace(scenario.run, step_s=step))
+        step = min(2.0 * scenario.run.fixed_step_s, longest_step_s(scenario))
+        return scenario.at_step(step)
 
     def lengthen_steps(self) -> None:
         """Take twice the steps, but none that is longer than the longest."""
-        longest = [longest_step_s(trial.field) for trial in self.dataset.trials]
-        self.step_s = [min(2.0 * step, most) for step, most in zip(self.step_s, longest, strict=True)]
+        self.step_s = [min(2.0 * step, most) for step, most in zip(self.step_s, self._longest_s(), strict=True)]
 
     def shorten_steps_for(self, effects: Sequence[Effect]) -> bool:
         """Take the steps that effects are run in for the nominal model too, and return whether any changed.
@@ -322,11 +326,21 @@ def _size(path: Path | None) -> int:
     return 0 if path is None else 2 * (path.position_m.nbytes + path.orientation.nbytes) + path.contact_mode.nbytes
 
 
-def longest_step_s(field: object) -> float:
-    """Return the step that is tried first in a field, s."""
+def longest_in(field: object) -> float:
+    """Return the step that is tried first in a field, s, if the scheme is stable in it."""
     longest = LONGEST_STEP_S
     if isinstance(field, RotatingField):
         longest = min(longest, 1.0 / (_STEPS_PER_CYCLE * field.frequency_Hz))
+    return longest
+
+
+def longest_step_s(scenario: Scenario) -> float:
+    """Return the step that is tried first, s: `longest_in` its field, halved to well within what is stable."""
+    longest = longest_in(scenario.field)
+    if scenario.model.magnetic_torque == "start_of_step":
+        bound = scenario.at_step(longest, "midpoint").trial().stability_bound_s
+        while longest > _STABLE * bound:
+            longest *= 0.5
     return longest
 
 
