@@ -292,10 +292,11 @@ class _Conclusion:
     def _floors(self, chosen: Contender) -> tuple[TrialFloor, ...]:
         comparison = self.comparison
         ends = comparison.nuisances.at_tolerance(chosen.residual.local)
+        steps = comparison.simulator.steps_of(chosen.effects)
         return tuple(
             TrialFloor(
                 trial=reader.observed.id,
-                step_s=comparison.simulator.step_s[i],
+                step_s=steps[i],
                 numerical_sigmas=floor.numerical_sigmas,
                 tolerance_sigmas=floor.tolerance_sigmas,
                 frames=reader.observed.frames,
