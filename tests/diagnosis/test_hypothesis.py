@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from tumblers.effects.magnetization_misalignment import MagnetizationMisalignmen
 from tumblers.effects.size_error import SizeError
 from tumblers.effects.stray_field_gradient import StrayFieldGradient
 from tumblers.effects.surface_roughness import SurfaceRoughness
+from tumblers.errors import EffectError
 from tumblers.scenario import Scenario
 
 from .lab import UPWARDS, plan
@@ -72,6 +74,42 @@ def test_a_pull_stays_in_a_field_at_rest_until_it_grows_with_the_frequency() -> 
     powers = [pull(turning, power) for power in np.linspace(0.1, 1.0, 50)]
     assert np.all(np.diff(powers) < 0.0)
     assert powers[-1] == pytest.approx(pull(turning, 0.0) * 0.2**3)
+
+
+class _Odd(FrictionCoefficient):
+    """A user's own that says of its ranges and starts what it is told to."""
+
+    said: ClassVar[dict[str, Any]] = {}
+
+    @classmethod
+    def ranges(cls, scenario: Scenario) -> tuple[tuple[float, float], ...]:
+        found = cls.said.get("ranges", super().ranges(scenario))
+        if isinstance(found, Exception):
+            raise found
+        return found  # type: ignore[no-any-return]
+
+    @classmethod
+    def starts(cls, scenario: Scenario) -> tuple[tuple[float, ...], ...]:
+        return cls.said.get("starts", super().starts(scenario))  # type: ignore[no-any-return]
+
+
+@pytest.mark.parametrize(
+    ("said", "message"),
+    [
+        ({"ranges": ZeroDivisionError("no weight")}, "ranges or starts failed with ZeroDivisionError: no weight"),
+        ({"ranges": ((0.5, 1.5),)}, "ranges or starts failed with ValueError"),
+        ({"starts": ((0.9, 0.0, 0.0),)}, "ranges or starts failed with ValueError"),
+        ({"starts": None}, "ranges or starts failed with TypeError"),
+        ({"starts": ((0.9, 0.0),), "ranges": ((0.5,), (0.0,))}, "ranges or starts failed with ValueError"),
+    ],
+)
+def test_ranges_and_starts_that_fail_are_said_to(
+    said: dict[str, Any], message: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(_Odd, "said", said)
+    with pytest.raises(EffectError, match=f"friction_coefficient: its {message}") as error:
+        Hypothesis.of(_Odd, [Simulator(plan()).nominal(0)])
+    assert "\n" not in str(error.value)
 
 
 def test_what_changes_no_trial_has_no_start() -> None:

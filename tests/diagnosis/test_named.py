@@ -125,7 +125,7 @@ def test_the_file_obeys_its_format(which: str, request: pytest.FixtureRequest) -
         assert {"why", "trial"} <= set(proposed)
 
 
-def test_the_answer_depends_on_the_seed_alone(dragged: Diagnosis) -> None:
+def test_the_answer_does_not_depend_on_the_number_of_threads(dragged: Diagnosis) -> None:
     again = diagnose(seen(TRUTHS["viscous_drag"]), effects=CONSIDERED, jobs=1)
     assert again.to_json() == dragged.to_json()
     assert again.effects_toml() == dragged.effects_toml()

@@ -42,6 +42,13 @@ def test_what_is_held_is_not_moved() -> None:
     assert all(point[1] == 0.0 for point in _points_around(fit, 1.0, np.random.default_rng(0)))
 
 
+def test_what_is_tried_depends_on_the_seed_alone() -> None:
+    fit = fit_at(SizeError, [0.1, 0.2])
+    first, again, other = (_points_around(fit, 1.0, np.random.default_rng(seed)) for seed in (3, 3, 4))
+    np.testing.assert_array_equal(first, again)
+    assert not np.array_equal(first, other)
+
+
 def test_a_move_that_changes_nothing_is_none() -> None:
     # An exponent rests near zero, and has no less.
     fit = fit_at(StrayFieldGradient, [0.3, 0.1, -0.2, 0.0])

@@ -11,9 +11,11 @@ from tumblers.diagnosis.attribute import _may_be_tolerated, _with_tolerated
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.contender import of_fit, of_nominal
 from tumblers.diagnosis.fitter import Fitter
+from tumblers.diagnosis.floor import TOLERANCES
 from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.simulator import Simulator
-from tumblers.diagnosis.tolerated import is_tolerated
+from tumblers.diagnosis.tolerated import _FACTORS, is_tolerated
+from tumblers.effects import CATALOGUE
 from tumblers.effects.base import Effect
 from tumblers.effects.electrostatic_force import ElectrostaticForce
 from tumblers.effects.friction_coefficient import FrictionCoefficient
@@ -29,6 +31,12 @@ MOMENT = 0.02598
 FRICTION = 0.015
 # A hundredth of the attraction by paper, three times.
 FORCE_N = 0.03 * plan().substrate.electrostatic_force_N
+
+
+def test_every_factor_of_a_nominal_number_is_one() -> None:
+    for name, numbers in _FACTORS.items():
+        assert {*numbers} <= {parameter.key for parameter in CATALOGUE[name].parameters}
+        assert {*numbers.values()} <= {*TOLERANCES}
 
 
 @pytest.mark.parametrize(

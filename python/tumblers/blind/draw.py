@@ -19,7 +19,7 @@ from .cause import CatalogueCause, Cause, OutsideCause
 from .jitter import Jitter
 from .lab import Lab
 from .law import Law
-from .layout import draw_lab, jitter_strength, world_scenario
+from .layout import FINER, draw_lab, jitter_strength, world_scenario
 from .schedule import Task, task
 from .sensing import Nuisances, measure
 from .strength import Strength, strength
@@ -42,8 +42,8 @@ _ATTEMPTS = 3
 # Labs after which another pair of effects is drawn: one of them may have no part in any lab's motion.
 _LABS_PER_PAIR = 3
 _SMALLEST = 1e-3
-# Another step of the world changes no more than this share of what its causes change.
-_FINER, REPEATS = 0.7, 0.15
+# Another step of the world (`FINER`) changes no more than this share of what its causes change.
+REPEATS = 0.15
 _OTHER_FORM = 1.0 / 3.0
 
 
@@ -97,7 +97,7 @@ class _World:
         """Return whether the world with its causes hardly depends on its step: a lab shows what it sees again."""
         try:
             scenes = self.scenes(laws)
-            shown, stepped = strength(self.lab, scenes, self.plain, self.moved), self.scenes(laws, finer=_FINER)
+            shown, stepped = strength(self.lab, scenes, self.plain, self.moved), self.scenes(laws, finer=FINER)
             # With the same numbers: what they may be off is no excuse.
             change = strength(self.lab, stepped, scenes)
             return change.sigma <= max(QUIET_SIGMA, REPEATS * shown.sigma)

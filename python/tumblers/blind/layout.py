@@ -21,7 +21,7 @@ from .strength import Strength, strength
 from .view import climbed_share, rest_tilt
 from .world import Scene, watch
 
-__all__ = ["STEADY_SIGMA", "draw_lab", "jitter_strength", "world_scenario"]
+__all__ = ["FINER", "STEADY_SIGMA", "draw_lab", "jitter_strength", "world_scenario"]
 
 _PAIRS = (
     ("cuboid", "paper", 0.010),
@@ -36,6 +36,8 @@ _TRIES = 12
 _DOUBTFUL = (0.5 * CLIMBED, 2.0 * CLIMBED)
 # A lab keeps the trials that repeat: those in which the numbers' jitter and the step stay below the noise.
 STEADY_SIGMA = 1.0
+# The other step of the world, in which a motion has to repeat, over its own.
+FINER = 0.7
 
 
 def world_scenario(lab: Lab, plan: Plan, jitter: Jitter) -> Scenario:
@@ -210,7 +212,7 @@ def _repeats(lab: Lab, plan: Plan, jitter: Jitter) -> bool:
 
 
 def _finer(scenario: Scenario) -> Scenario:
-    return replace(scenario, run=replace(scenario.run, step_s=0.7 * scenario.run.fixed_step_s))
+    return replace(scenario, run=replace(scenario.run, step_s=FINER * scenario.run.fixed_step_s))
 
 
 def _sensible(plan: Plan, scene: Scene, lab: Lab) -> bool:

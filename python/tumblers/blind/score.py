@@ -11,6 +11,7 @@ from pathlib import Path
 from statistics import mean, median
 from typing import Any
 
+from ..effects.catalogue import get
 from ..errors import InputError, TumblersError
 from .forms import law_of
 from .jitter import Jitter
@@ -349,19 +350,19 @@ def _coverage(records: Sequence[Record]) -> dict[str, Share]:
         if set(named) != set(record.truth):
             continue
         for effect in record.answer.effects:
-            for key, interval in named[effect.name].items():
-                if key in effect.parameters:
-                    inside = _inside(key, float(effect.parameters[key]), interval)
+            for parameter in get(effect.name).parameters:
+                key = parameter.key
+                if key in effect.parameters and key in named[effect.name]:
+                    inside = _inside(float(effect.parameters[key]), named[effect.name][key], parameter.turns)
                     found.setdefault(effect.name, []).append(inside)
     return {name: share_of(hits) for name, hits in sorted(found.items())}
 
 
-def _inside(key: str, truth: float, interval: Mapping[str, float | None]) -> bool:
-    turns = (-360.0, 0.0, 360.0) if key == "theta2_deg" else (0.0,)
+def _inside(truth: float, interval: Mapping[str, float | None], turns: bool) -> bool:
     # An end that is no number is open.
     low = -inf if interval["low"] is None else interval["low"]
     high = inf if interval["high"] is None else interval["high"]
-    return any(low <= truth + turn <= high for turn in turns)
+    return any(low <= truth + turn <= high for turn in ((-360.0, 0.0, 360.0) if turns else (0.0,)))
 
 
 def _shrink(record: Record) -> float | None:

@@ -1,6 +1,6 @@
 """`attribute`: which effect of the catalogue, or which two, makes the gap.
 
-Every effect is fitted, then pairs by forward selection from the best. Hypotheses are compared by Laplace's evidence,
+What `Search` found is run in steps that are short enough for what leads. Hypotheses are compared by Laplace's evidence,
 
 ```text
 ln Z = -(cost + ln det Σ)/(2c) + ln Occam + ln prior,
@@ -121,10 +121,9 @@ class Attribution:
     def _lapse(self, contender: Contender) -> float:
         """Return a contender's share of `LAPSE`; what counts as the nominal model has left it its own."""
         share = LAPSE / len(self.contenders)
-        merged = [c for c in self.contenders if c.names and c.probability == 0.0]
         if not contender.names:
-            return (1 + len(merged)) * share
-        return 0.0 if contender in merged else share
+            return (1 + sum(c.merged for c in self.contenders)) * share
+        return 0.0 if contender.merged else share
 
     def refusing(self, refused: Collection[tuple[str, ...]]) -> Attribution:
         """Return the attribution with some contenders as improbable beside the others as `REFUSED` makes them.
@@ -150,7 +149,7 @@ class Attribution:
 def attribute(
     comparison: Comparison, kinds: Sequence[type[Effect]], on_phase: OnPhase | None = None, seed: int = 0
 ) -> Attribution:
-    """Fit every effect, and pairs where one leaves a gap.
+    """Fit every effect, and pairs where one takes something off the gap.
 
     Parameters
     ----------
@@ -186,7 +185,7 @@ def seen_from_the_best(fitter: Fitter, attribution: Attribution) -> Attribution:
     Parameters
     ----------
     fitter
-        Of the dataset; the noise stays.
+        Of the dataset; leaves the noise around the best.
     attribution
         Every hypothesis, against whatever noise.
     """
@@ -206,7 +205,7 @@ def _with_tolerated(fitter: Fitter, ranked: Sequence[Contender], dispersion: flo
     scenarios = [fitter.comparison.simulator.nominal(i) for i in fitter.trials]
     same = [c for c in ranked if c.fit is None or _may_be_tolerated(fitter, c.fit, scenarios, dispersion)]
     probability, evidence = sum(c.probability for c in same), max(c.log_evidence for c in same)
-    made = [replace(c, probability=0.0) if c.names and c in same else c for c in ranked]
+    made = [replace(c, probability=0.0, merged=True) if c.names and c in same else c for c in ranked]
     made = [c if c.names else replace(c, probability=probability, log_evidence=evidence) for c in made]
     return sorted(made, key=lambda c: (-c.log_evidence, len(c.names)))
 
@@ -255,6 +254,7 @@ def _seen(fitter: Fitter, contender: Contender, first: bool) -> Contender:
         log_likelihood=contender.log_likelihood,
         log_evidence=contender.log_evidence,
         probability=contender.probability,
+        merged=contender.merged,
     )
 
 

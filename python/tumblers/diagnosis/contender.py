@@ -40,13 +40,16 @@ class Contender:
     step_credit
         What the shorter steps that it is run in take off the objective by themselves: it is added again.
     settled
-        Whether it was fitted against the noise around itself, not around another.
+        Whether its derivatives are of a fit against the noise around itself. One to which the best's noise was lent
+        keeps this.
     log_likelihood
         What of ln Z the fit makes: minus half the objective there and ln det of its noise, over the dispersion.
     log_evidence
         ln Z, the prior included.
     probability
         Over all contenders.
+    merged
+        Whether it counts as the nominal model, which has its probability.
     """
 
     names: tuple[str, ...]
@@ -59,6 +62,7 @@ class Contender:
     log_likelihood: float = 0.0
     log_evidence: float = 0.0
     probability: float = 0.0
+    merged: bool = False
 
     @property
     def point(self) -> Floats:
@@ -72,7 +76,11 @@ class Contender:
 
     @property
     def total(self) -> float:
-        """-2 ln likelihood, but for what is the same for all: what contenders are compared by."""
+        """What contenders are compared by: twice the dispersion times -ln likelihood, but for what is the same for all.
+
+        In this unit, not in ln: `CLEAR`, `ENOUGH`, `NEAR`. What is said in ln, as `OPEN` or `SECOND`, counts twice for
+        each of the numbers that count as one (`Comparison.alike`).
+        """
         return self.cost + self.log_determinant + self.step_credit
 
     @property

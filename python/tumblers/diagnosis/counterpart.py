@@ -129,7 +129,7 @@ def as_good(
 ) -> list[Counterpart]:
     """Return the counterparts that do enough of what the contender does about the data, the likeliest first.
 
-    The noise is taken around the contender, and stays.
+    Leaves the noise around the contender.
 
     Parameters
     ----------
@@ -150,7 +150,7 @@ def counterparts(
 
     An effect is there by all of its parameters, and by the one of them that does it best alone.
 
-    The noise is taken around the contender, and stays.
+    Leaves the noise around the contender.
 
     Parameters
     ----------

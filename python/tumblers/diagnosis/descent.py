@@ -29,6 +29,9 @@ _WEIGHINGS, _REWEIGHED = 2, 1.3
 _CHANGE, _LEAST_STEP, _MOST_STEP, _FIRST_STEP = 0.3, 1e-3, 5e-2, 1e-2
 # Derivatives of a step that is off by more than this factor are taken again.
 _RESTEPPED = 3.0
+# Where it ends: a step gains less than this share of the objective, moves by less than this share of the point, or
+# could gain no more than this slope says. What counts moves objectives by some units, in thousands.
+_SMALL_GAIN, _SMALL_STEP, _SMALL_SLOPE = 1e-3, 1e-4, 1e-3
 
 
 class _Moved(NamedTuple):
@@ -122,7 +125,14 @@ class Descent:
         return np.column_stack(columns)
 
     def end(self, evaluations: int) -> Floats:
-        """Return where least squares end, in so many trial points at most."""
+        """Return where least squares end.
+
+        Parameters
+        ----------
+        evaluations
+            Trial points at most; where the trials' weights change by it, half as many follow once more. Of one, the
+            point is the start and only the derivatives there are taken.
+        """
         point = self.start
         for weighing in range(_WEIGHINGS):
             result = least_squares(
@@ -132,9 +142,9 @@ class Descent:
                 bounds=self.bounds,
                 loss=self.loss,
                 max_nfev=evaluations if weighing == 0 else max(evaluations // 2, 2),
-                ftol=1e-3,
-                xtol=1e-4,
-                gtol=1e-3,
+                ftol=_SMALL_GAIN,
+                xtol=_SMALL_STEP,
+                gtol=_SMALL_SLOPE,
             )
             if self.cost(result.x) <= self.cost(point):
                 point = result.x

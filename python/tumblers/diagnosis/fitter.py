@@ -43,7 +43,8 @@ class Fitter(Objective):
         still
             How wrong each is at its base: the same for all.
         slopes
-            Derivatives of the differences by the first effects' parameters at the base, shape (n, q).
+            `Fit.jacobian` of the first effects at the base, shape (at least n, q), its rows weighted as in that fit:
+            near enough for guesses.
         """
         starts = [[np.clip(b + s, h.low, h.high) for s in h.starts] for h, b in zip(hypotheses, base, strict=True)]
         # One hypothesis after another: long tracks of all at once would fill the memory.
@@ -101,7 +102,7 @@ class Fitter(Objective):
         train
             Trials that are fitted; all if None.
         evaluations
-            At most so many trial points.
+            As for `Descent.end`.
         share
             Of each trial's time that counts.
         steps

@@ -43,7 +43,16 @@ from .pose import Path
 from .reading import Reader
 from .simulator import SHORTEST_STEP_S, Edit, Job, Simulator
 
-__all__ = ["SHARED", "TOLERANCES", "Floor", "Sensitivity", "build_floor", "choose_steps", "measure_sensitivity"]
+__all__ = [
+    "MOST_OFF",
+    "SHARED",
+    "TOLERANCES",
+    "Floor",
+    "Sensitivity",
+    "build_floor",
+    "choose_steps",
+    "measure_sensitivity",
+]
 
 Floats = NDArray[np.float64]
 _NO_LOCAL, _NO_CAMERA = np.zeros(3), np.zeros(2)
@@ -61,6 +70,8 @@ TOLERANCES = {
 }
 # Nuisances that all trials share beside the camera's: the tolerances, and the step.
 SHARED = len(TOLERANCES) + 1
+# A nominal number is not off by more than so many of its tolerances.
+MOST_OFF = 3.0
 # The step is halved until this moves the path by less, in noise sigmas.
 _GOOD_ENOUGH = 0.7
 _FINEST_S = SHORTEST_STEP_S * (1.0 + 1e-9)

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..effects.base import Effect
 from ..effects.parameter import Nuisance
-from ..errors import InputError
+from ..errors import EffectError, InputError, TumblersError, show
 from ..scenario import Scenario
 
 __all__ = ["PRIOR_SIGMA", "SECOND", "Hypothesis"]
@@ -65,6 +66,11 @@ class Hypothesis:
         """Return the hypothesis of one effect, over what is plausible in any of the scenarios.
 
         What changes none of them, as a factor of a friction that is zero, has no starts.
+
+        Raises
+        ------
+        EffectError
+            An effect of a user's own whose ranges or starts fail.
         """
         neutral = np.array(kind.to_fit([p.neutral for p in kind.parameters]))
         low, high = neutral.copy(), neutral.copy()
@@ -72,12 +78,12 @@ class Hypothesis:
         points: dict[tuple[float, ...], None] = {}
         close: dict[tuple[float, ...], None] = {}
         for scenario in scenarios:
-            ranges = np.array(kind.fit_ranges(scenario))
-            low, high = np.minimum(low, ranges[:, 0]), np.maximum(high, ranges[:, 1])
-            own = np.array(kind.ranges(scenario))
+            said = _Said.of(kind, scenario)
+            low, high = np.minimum(low, said.fit_ranges[:, 0]), np.maximum(high, said.fit_ranges[:, 1])
+            own = said.ranges
             widest = np.column_stack([np.minimum(widest[:, 0], own[:, 0]), np.maximum(widest[:, 1], own[:, 1])])
-            points |= dict.fromkeys(kind.to_fit(start) for start in kind.starts(scenario))
-            close |= dict.fromkeys(kind.to_fit(start) for start in kind.close_starts(scenario))
+            points |= dict.fromkeys(said.starts)
+            close |= dict.fromkeys(said.close)
         if not any(_changes(kind, scenario) for scenario in scenarios):
             points, close = {}, {}
         scale = np.maximum(np.maximum(high - neutral, neutral - low), 1e-300)
@@ -208,6 +214,33 @@ class Hypothesis:
             values += kind.from_fit(coordinates[len(values) : len(values) + len(kind.parameters)])
         # Rounding may carry the end of a range beyond what is possible.
         return np.clip(values, self.ranges[:, 0], self.ranges[:, 1])
+
+
+class _Said(NamedTuple):
+    """What an effect says of a scenario: ranges, shape (p, 2), and starts as coordinates of a fit."""
+
+    ranges: Floats
+    fit_ranges: Floats
+    starts: list[tuple[float, ...]]
+    close: list[tuple[float, ...]]
+
+    @classmethod
+    def of(cls, kind: type[Effect], scenario: Scenario) -> _Said:
+        count = len(kind.parameters)
+        try:
+            ranges, fit_ranges = (
+                np.array(found(scenario), dtype=np.float64) for found in (kind.ranges, kind.fit_ranges)
+            )
+            starts, close = ([kind.to_fit(s) for s in found(scenario)] for found in (kind.starts, kind.close_starts))
+        except TumblersError:
+            raise
+        except Exception as error:
+            raise EffectError(
+                f"{kind.name}: its ranges or starts failed with {type(error).__name__}: {error}"
+            ) from error
+        if not ranges.shape == fit_ranges.shape == (count, 2):
+            raise EffectError(f"{kind.name}: ranges returned {show(ranges.tolist())}, expected {count} pairs")
+        return cls(ranges, fit_ranges, starts, close)
 
 
 def _changes(kind: type[Effect], scenario: Scenario) -> bool:

@@ -89,10 +89,10 @@ def shaken(fitter: Fitter, contender: Contender, seed: int, tell: OnPhase) -> Co
     return best
 
 
-def _points_around(fit: Fit, dispersion: float, rng: np.random.Generator) -> list[Floats]:
-    """Return points around a fit, within the range, the dispersion being how many numbers count as one."""
+def _points_around(fit: Fit, alike: float, rng: np.random.Generator) -> list[Floats]:
+    """Return points around a fit, within the range, `alike` being how many numbers count as one."""
     count = len(fit.point)
-    root = np.linalg.cholesky(fit.covariance(dispersion))
+    root = np.linalg.cholesky(fit.covariance(alike))
     spreads = [*(spread * root for spread in _SPREADS), *(share * np.eye(count) for share in _SHARES)]
     low, high = fit.hypothesis.low, fit.hypothesis.high
     moves = [spreads[k % len(spreads)] @ rng.normal(size=count) for k in range(_POINTS)]

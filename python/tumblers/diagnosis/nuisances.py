@@ -26,7 +26,7 @@ from .. import _core
 from ..dataset import Sensor
 from ..effects.parameter import Nuisance
 from ..progress import native_call
-from .floor import SHARED
+from .floor import MOST_OFF, SHARED
 from .pose import Path
 from .reading import Reader
 from .stretch import Stretch
@@ -42,8 +42,6 @@ _TELLS = 1e-3
 # A mean over trials that is farther from zero than so many of its standard deviations is no chance. A choice: of a
 # hundred sensors within their tolerances one or two have such a clock, where the nominal model is right.
 _NO_CHANCE = 2.5
-# A nominal number is not off by more than so many tolerances.
-_MOST_OFF = 3.0
 # A tolerance is two standard deviations; a clock's offset is uniform within it.
 _ORIGIN_SIGMA, _CAMERA_SIGMA, _CLOCK_SIGMA = 0.5, 0.5, 3.0**-0.5
 
@@ -105,7 +103,7 @@ class NuisanceFit:
         self.local_sigmas = np.maximum(sigmas, 1e-12)
         camera = np.array([radians(sensor.heading_tolerance_deg), sensor.scale_tolerance])
         # A step is no coarser than the longest, and no finer than ours.
-        most = np.concatenate([camera, np.full(SHARED - 1, _MOST_OFF)])
+        most = np.concatenate([camera, np.full(SHARED - 1, MOST_OFF)])
         self.shared_bounds = np.append(-most, 0.0), np.append(most, 1.0)
         self.shared_sigmas = np.concatenate([np.maximum(_CAMERA_SIGMA * camera, 1e-12), np.ones(SHARED)])
 

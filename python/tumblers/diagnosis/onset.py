@@ -41,7 +41,7 @@ from .observed import CHANNELS
 from .pose import Path
 from .result import Region
 
-__all__ = ["CLEAR", "begins_at_phase", "begins_at_place", "begins_at_time"]
+__all__ = ["CLEAR_LN", "begins_at_phase", "begins_at_place", "begins_at_time"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -54,7 +54,7 @@ _SHARES = np.diff(erf(np.array(_ENDS) / np.sqrt(2.0 * _VARIANCES[:, None])))
 # ln of the probability of a step by the variance, shape (variances, steps).
 _LOG_SHARES = np.log((1.0 - _ANY) * _SHARES + _ANY / _STEPS)
 # Three standard deviations as a logarithm of likelihoods.
-CLEAR = 4.5
+CLEAR_LN = 4.5
 # The least share, Λ of the common region over the sum of Λ of each trial's own best: chance adds to the latter. In
 # three blind seeds (71, 83, 97) it was 0.74 and more of moments and places in which a cause set in, and 0.65 and less
 # of those of causes that set in along another axis: a choice between the two, made with the answers known. Parts of the
@@ -284,7 +284,7 @@ def _shared(evidence: Floats) -> int | None:
     if np.count_nonzero(evidence[best] > 0.0) < 2:
         return None
     told, own = float(evidence[best].sum()), float(np.maximum(evidence.max(axis=0), 0.0).sum())
-    return best if told > CLEAR + log(len(evidence)) and told >= _SHARED * own else None
+    return best if told > CLEAR_LN + log(len(evidence)) and told >= _SHARED * own else None
 
 
 def _measured_y(comparison: Comparison, residual: Residual, cells: Cells) -> Floats:

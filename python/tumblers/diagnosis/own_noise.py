@@ -44,7 +44,7 @@ Floats = NDArray[np.float64]
 
 # Trial points of a fit that has only to follow another noise, and of a good one that is taken further.
 IDLE_POINTS, POLISH_POINTS = 2, 6
-# What takes so much off the objective asks for another round.
+# What takes so much off a total asks for another round.
 ENOUGH = 5.0
 # Effects that are held against their own noise before one counts as best, and how many where that gains much.
 OWN, MOST_OWN = 4, 6
@@ -53,12 +53,14 @@ _SETTLED, _ROUNDS = 2, 2
 # What another may gain by its own noise, over the most that one has gained: at one threshold, in a dataset whose truth
 # was known, five effects gained 640 to 790.
 _AS_MUCH = 1.5
-# What comes so near to the best is held against its own noise, so many at most.
+# What comes so near to the best's total is held against its own noise, so many at most.
 NEAR, _MOST_NEAR = 300.0, 6
 
 
 def again(fitter: Fitter, contenders: Sequence[Contender]) -> list[Contender]:
     """Hold the same fits against the noise of the moment, what was settled against its own; the likeliest first.
+
+    None of them counts as settled. The noise may be left around any of them.
 
     Parameters
     ----------
@@ -77,7 +79,7 @@ def again(fitter: Fitter, contenders: Sequence[Contender]) -> list[Contender]:
 
 
 def against_itself(fitter: Fitter, fit: Fit) -> Contender:
-    """Hold a fit against its own noise.
+    """Hold a fit against its own noise, which is left around it.
 
     Parameters
     ----------
@@ -186,6 +188,8 @@ def each_by_itself(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhas
 def by_itself(fitter: Fitter, contender: Contender, evaluations: int) -> Contender:
     """Hold a contender against its own noise and fit it on, its derivatives where it ends.
 
+    Leaves the noise around it.
+
     Parameters
     ----------
     fitter
@@ -203,6 +207,8 @@ def settled_at(
     fitter: Fitter, hypothesis: Hypothesis, point: Floats, evaluations: int = 1, steps: Floats | None = None
 ) -> Contender:
     """Hold a hypothesis at a point against its own noise there and fit it on, its derivatives where it ends.
+
+    Leaves the noise around that point.
 
     Parameters
     ----------
@@ -263,7 +269,9 @@ def _says_the_same(fitter: Fitter, contender: Contender, best: Contender, lent: 
 
 
 def lead_around(fitter: Fitter, contender: Contender, other: Contender) -> float:
-    """Return by how much a contender's total is less than another's against the noise around that; the noise stays.
+    """Return by how much a contender's total is less than another's against the noise around that.
+
+    The noise is as before.
 
     Parameters
     ----------

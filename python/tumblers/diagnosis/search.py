@@ -129,8 +129,7 @@ class Search:
         # What came near the best counts against its own noise here too.
         near = found[0].total + NEAR
         held = again(self.fitter, [c if c.total <= near else replace(c, settled=False) for c in found])
-        unsettled = [replace(contender, settled=False) for contender in held]
-        made = settled(self.fitter, unsettled, self.tell, fitted=True)
+        made = settled(self.fitter, held, self.tell, fitted=True)
         made = likeliest_first([shaken(self.fitter, made[0], self.seed, self.tell), *made[1:]])
         if len(made[0].names) == 1:
             return made

@@ -30,7 +30,7 @@ _ROUNDS = 2
 _FACTORS, _AROUND = (0.8, 0.9, 0.95, 0.98, 1.0, 1.02, 1.05, 1.1, 1.25), (-1.0, -0.5, 0.5, 1.0)
 
 
-def as_far(fitter: Fitter, contender: Contender, dispersion: float) -> Contender:
+def as_far(fitter: Fitter, contender: Contender, alike: float) -> Contender:
     """Return a contender against its own noise, or what is likelier near it.
 
     Parameters
@@ -39,16 +39,16 @@ def as_far(fitter: Fitter, contender: Contender, dispersion: float) -> Contender
         Of the dataset.
     contender
         One or two effects.
-    dispersion
+    alike
         How many numbers count as one.
     """
     known = contender if contender.settled else by_itself(fitter, contender, evaluations=1)
     assert known.fit is not None
     hypothesis = known.fit.hypothesis
-    those = unneeded(known.fit, dispersion)
+    those = unneeded(known.fit, alike)
     less, start = hypothesis.held(those), np.where(those, 0.0, known.point)
     if less.free == 1:
-        end = _on_its_line(fitter, less, start, dispersion)
+        end = _on_its_line(fitter, less, start, alike)
     else:
         end = start
         for _ in range(_ROUNDS):
@@ -57,7 +57,7 @@ def as_far(fitter: Fitter, contender: Contender, dispersion: float) -> Contender
     return likeliest([known, settled_at(fitter, hypothesis, end)])
 
 
-def _on_its_line(fitter: Fitter, hypothesis: Hypothesis, start: Floats, dispersion: float) -> Floats:
+def _on_its_line(fitter: Fitter, hypothesis: Hypothesis, start: Floats, alike: float) -> Floats:
     """Return the likeliest point near a start in one parameter."""
 
     def within(point: Floats) -> Floats:
@@ -67,6 +67,6 @@ def _on_its_line(fitter: Fitter, hypothesis: Hypothesis, start: Floats, dispersi
     best = least(fitter, hypothesis, [within(factor * start) for factor in _FACTORS], 1)[0][1]
     near = settled_at(fitter, hypothesis, best, POLISH_POINTS)
     assert near.fit is not None
-    deviation = np.sqrt(np.diag(near.fit.covariance(dispersion)))
+    deviation = np.sqrt(np.diag(near.fit.covariance(alike)))
     around = [replace(near.fit, point=within(near.point + way * deviation)) for way in _AROUND]
     return likeliest([near, *(against_itself(fitter, fit) for fit in around)]).point

@@ -3,7 +3,7 @@
 What moves fast is run in shorter steps than the nominal model. Where the nominal model is right in these, the smaller
 numerical error would speak for the hypothesis: by as much as they take off the nominal model's own objective, in either
 step against the noise around it. Where it is wrong in them, its objective in one step or another says nothing of a
-hypothesis that is not wrong; whichever leads then imposes its steps on all others (`Search`).
+hypothesis that is not wrong; whichever leads then imposes its steps on all others (`resolved`, `attribute`).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ __all__ = ["step_credit"]
 
 
 def step_credit(fitter: Fitter, effects: tuple[Effect, ...]) -> float:
-    """Return the credit of a hypothesis, at least 0; the noise of the moment stays.
+    """Return the credit of a hypothesis, at least 0; steps and noise are as before.
 
     Parameters
     ----------

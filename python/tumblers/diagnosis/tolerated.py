@@ -7,12 +7,10 @@ from math import hypot
 
 from ..effects.base import Effect
 from ..scenario import Scenario
-from .floor import TOLERANCES
+from .floor import MOST_OFF, TOLERANCES
 
 __all__ = ["is_tolerated", "least_deviation", "tolerated"]
 
-# So many standard deviations may a nominal number be off.
-_MOST = 3.0
 # Parameters that are a nominal number's factor, and the number; others of these effects are not tolerated at all.
 _FACTORS: Mapping[str, Mapping[str, str]] = {
     "magnetization_strength": {"factor": "magnetization"},
@@ -39,12 +37,12 @@ def tolerated(kind: type[Effect], scenarios: Sequence[Scenario]) -> tuple[tuple[
         The nominal ones of all trials.
     """
     if kind.name == _FORCE:
-        most = _MOST * _force_deviation(scenarios)
+        most = MOST_OFF * _force_deviation(scenarios)
         return ((-most, most),) if most > 0.0 else None
     numbers = _FACTORS.get(kind.name)
     if numbers is None:
         return None
-    shares = [_MOST * _share(numbers[p.key]) if p.key in numbers else 0.0 for p in kind.parameters]
+    shares = [MOST_OFF * _share(numbers[p.key]) if p.key in numbers else 0.0 for p in kind.parameters]
     return tuple((p.neutral - share, p.neutral + share) for p, share in zip(kind.parameters, shares, strict=True))
 
 

@@ -32,7 +32,7 @@ from numpy.typing import NDArray
 from ..progress import OnPhase
 from .comparison import Comparison, Residual
 from .loss import robust_cost
-from .onset import CLEAR
+from .onset import CLEAR_LN
 from .pose import Path
 from .result import Region
 from .simulator import Job
@@ -116,7 +116,7 @@ def lacks_at_place(
     )
     nothing = left_by(comparison, residual, trial, path, residual.trials[trial])
     best, rest = float(np.min(there)), min(nothing, float(np.min(elsewhere, initial=np.inf)))
-    clear = 2.0 * comparison.alike * (CLEAR + log(total))
+    clear = 2.0 * comparison.alike * (CLEAR_LN + log(total))
     if best >= rest - clear or best > (1.0 - _LEAST_TAKEN) * nothing:
         return None
     wide = comparison.alike * max(1.0, best / comparison.weighed[trial])
