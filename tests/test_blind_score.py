@@ -276,13 +276,14 @@ def test_records_come_back_as_they_were_written(tmp_path: Path) -> None:
         ("dataset-000/diagnosis.json", '{"format": "tumblers-diagnosis/1"}', "verdict: found no such key"),
         (
             "dataset-000/diagnosis.json",
-            '{"format": "tumblers-diagnosis/1", "verdict": "explained", "effects": [{"name": 5}]}',
-            r"effects\[0\]\.name: found 5, expected a text",
+            '{"format": "tumblers-diagnosis/1", "verdict": "explained", "ranking": [], "gap": {}, "where": [], '
+            '"effects": [{"name": 5, "parameters": {}, "confounded_with": []}]}',
+            r"effects\[0\]\.name: found 5, expected a name",
         ),
         (
             "dataset-000/run.json",
             '{"format": "tumblers-blind-run/1", "seconds": "x", "threads": 1, "version": "0"}',
-            "seconds: found 'x', expected a number",
+            "seconds: found 'x', expected a finite number",
         ),
         (
             "dataset-000/repeat.json",

@@ -96,7 +96,7 @@ RUN: dict[str, Any] = {
     "format": "tumblers-blind-run/1", "version": "0.1.0", "seconds": 12.5, "threads": 1, "error": None,
 }  # fmt: skip
 REPEAT: dict[str, Any] = {
-    "format": "tumblers-blind-repeat/1", "version": "0.1.0", "seconds": 9.5, "threads": 4, "cores": 2, "same": True,
+    "format": "tumblers-blind-repeat/1", "version": "0.1.0", "seconds": 9.5, "threads": 4, "cores": None, "same": True,
 }  # fmt: skip
 
 # Values that a file may have in the place of any other.

@@ -12,10 +12,8 @@ from ..errors import InputError, show
 from .answer import Answer, seal
 from .forms import law_of
 from .make import ANSWERS_FORMAT, SEAL, SEAL_FORMAT
-from .repeat import REPEAT_FORMAT
-from .run import DIAGNOSIS, RECORD, RECORD_FORMAT, REPEAT
 from .ties import effect_of
-from .written import FLAG, NUMBER, TEXT, read_diagnosis, read_table, read_timing
+from .written import read_diagnosis, read_repeat, read_run, read_table
 
 __all__ = ["Record", "read_records"]
 
@@ -126,13 +124,11 @@ def _record(folder: Path, salt: object, answer: object, answers: Path) -> Record
         raise InputError(f"{folder.name}.{error.key}", error.found, error.expected, answers) from None
     except (AttributeError, KeyError, OverflowError, TypeError, ValueError):
         raise InputError(folder.name, show(answer), "an answer of this version", answers) from None
-    diagnosis = read_diagnosis(folder / DIAGNOSIS) if (folder / DIAGNOSIS).exists() else None
-    run = read_timing(folder / RECORD, RECORD_FORMAT, {"version": TEXT})
-    again = read_timing(folder / REPEAT, REPEAT_FORMAT, {"cores": NUMBER, "same": FLAG})
+    run, again = read_run(folder) or {}, read_repeat(folder) or {}
     return Record(
         dataset=folder.name,
         answer=truth,
-        diagnosis=diagnosis,
+        diagnosis=read_diagnosis(folder),
         seconds=run.get("seconds"),
         threads=run.get("threads", 1),
         version=run.get("version"),

@@ -3,86 +3,45 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
-from math import isfinite
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, get_args
 
+from ..check import choice, number, sequence, text
 from ..diagnosis.diagnosis import FORMAT
 from ..diagnosis.result import Verdict
 from ..errors import InputError, show, unreadable
+from ..section import known_keys, require_table
+from .repeat import REPEAT_FORMAT
+from .run import DIAGNOSIS, RECORD, RECORD_FORMAT, REPEAT
 
-__all__ = ["FLAG", "NUMBER", "TEXT", "read_diagnosis", "read_table", "read_timing"]
-
-# Stands for a key of any name.
-_ANY = ""
-NUMBER, TEXT, FLAG = "a number", "a text", "true or false"
-_NUMBER_OR_NULL = "a number or null"
-
-_SHRINK = {"estimate": _NUMBER_OR_NULL}
-_INTERVAL = {"estimate": _NUMBER_OR_NULL, "low": _NUMBER_OR_NULL, "high": _NUMBER_OR_NULL}
-_DIAGNOSIS: dict[str, Any] = {
-    "verdict": get_args(Verdict),
-    "effects": [{"name": TEXT, "parameters": {_ANY: _INTERVAL}, "confounded_with": [TEXT]}],
-    "ranking": [{"effects": [TEXT], "probability": NUMBER}],
-    "gap": {
-        "noise_floor": NUMBER,
-        "before": _NUMBER_OR_NULL,
-        "after_nuisance_only": _NUMBER_OR_NULL,
-        "after": _NUMBER_OR_NULL,
-        "shrink": _SHRINK,
-    },
-    "where": [{"axis": TEXT}],
-}
-_TRIAL, _REGION = {"value": TEXT}, {"low": _NUMBER_OR_NULL, "high": _NUMBER_OR_NULL}
-_TIMING: dict[str, Any] = {"seconds": NUMBER, "threads": NUMBER}
+__all__ = ["read_diagnosis", "read_repeat", "read_run", "read_table"]
 
 
-def read_diagnosis(path: Path) -> dict[str, Any]:
-    """Return the table of a ``diagnosis.json``, whose keys that are scored are as they should be.
+def read_diagnosis(folder: Path) -> dict[str, Any] | None:
+    """Return the table of a dataset's ``diagnosis.json``, the keys that are scored checked; None where there is none.
 
     Parameters
     ----------
-    path
-        The file.
+    folder
+        The dataset's.
 
     Raises
     ------
     InputError
-        A file that cannot be read or is no diagnosis, or a key that is missing or of another kind.
+        As `read_table`, or a key that is missing or of another kind.
     """
-    table = read_table(path, FORMAT)
-    _expect(path, "", table, _DIAGNOSIS)
-    for i, region in enumerate(table["where"]):
-        if region["axis"] == "trial":
-            _expect(path, f"where[{i}]", region, _TRIAL)
-        elif "low" in region or "high" in region:
-            _expect(path, f"where[{i}]", region, _REGION)
-    return table
+    return _read(folder / DIAGNOSIS, FORMAT, _diagnosis)
 
 
-def read_timing(path: Path, version: str, also: Mapping[str, str]) -> dict[str, Any]:
-    """Return the table of a record of how long a diagnosis took; empty where there is none.
+def read_run(folder: Path) -> dict[str, Any] | None:
+    """Return the record of a dataset's diagnosis as `read_diagnosis` does."""
+    return _read(folder / RECORD, RECORD_FORMAT, _run)
 
-    Parameters
-    ----------
-    path
-        The file.
-    version
-        What its ``format`` has to be.
-    also
-        Further keys, and what each has to be.
 
-    Raises
-    ------
-    InputError
-        A file that cannot be read or is no such record, or a key that is missing or of another kind.
-    """
-    if not path.exists():
-        return {}
-    table = read_table(path, version)
-    _expect(path, "", table, {**_TIMING, **also})
-    return table
+def read_repeat(folder: Path) -> dict[str, Any] | None:
+    """Return the record of its repetition as `read_diagnosis` does."""
+    return _read(folder / REPEAT, REPEAT_FORMAT, _repeat)
 
 
 def read_table(path: Path, version: str) -> dict[str, Any]:
@@ -113,36 +72,83 @@ def read_table(path: Path, version: str) -> dict[str, Any]:
     return table
 
 
-def _expect(path: Path, key: str, value: Any, shape: Any) -> None:
-    """Refuse a value that has not a shape: a table of shapes, a list of one, any of some words, or a kind."""
-    if isinstance(shape, dict):
-        if not isinstance(value, dict):
-            raise InputError(key, show(value), "a table", path)
-        for name in value if _ANY in shape else shape:
-            inner = f"{key}.{name}" if key else name
-            if name not in value:
-                raise InputError(inner, "no such key", "one", path)
-            _expect(path, inner, value[name], shape.get(_ANY, shape.get(name)))
-    elif isinstance(shape, list):
-        if not isinstance(value, list):
-            raise InputError(key, show(value), "a list", path)
-        for i, entry in enumerate(value):
-            _expect(path, f"{key}[{i}]", entry, shape[0])
-    elif isinstance(shape, tuple):
-        if value not in shape:
-            raise InputError(key, show(value), " or ".join(shape), path)
-    elif not _is(value, shape):
-        raise InputError(key, show(value), shape, path)
-
-
-def _is(value: Any, kind: str) -> bool:
-    if value is None:
-        return kind == _NUMBER_OR_NULL
-    if kind == TEXT:
-        return isinstance(value, str)
-    if kind == FLAG:
-        return isinstance(value, bool)
+def _read(path: Path, version: str, check: Callable[[dict[str, Any]], None]) -> dict[str, Any] | None:
+    if not path.exists():
+        return None
+    table = read_table(path, version)
     try:
-        return isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
-    except OverflowError:
-        return False
+        check(table)
+    except InputError as error:
+        raise error.in_file(path) from None
+    return table
+
+
+def _diagnosis(table: dict[str, Any]) -> None:
+    _with_keys("", table, "verdict", "effects", "ranking", "gap", "where")
+    choice("verdict", table["verdict"], get_args(Verdict))
+    sequence("effects", table["effects"], "a list of effects", _effect)
+    sequence("ranking", table["ranking"], "a list of hypotheses", _ranked)
+    gap = _with_keys("gap", table["gap"], "noise_floor", "before", "after_nuisance_only", "after", "shrink")
+    number("gap.noise_floor", gap["noise_floor"])
+    for name in ("before", "after_nuisance_only", "after"):
+        _number_or_null(f"gap.{name}", gap[name])
+    _number_or_null("gap.shrink.estimate", _with_keys("gap.shrink", gap["shrink"], "estimate")["estimate"])
+    sequence("where", table["where"], "a list of regions", _region)
+
+
+def _effect(key: str, value: object) -> None:
+    effect = _with_keys(key, value, "name", "parameters", "confounded_with")
+    _name(f"{key}.name", effect["name"])
+    sequence(f"{key}.confounded_with", effect["confounded_with"], "a list of names", _name)
+    for name, interval in require_table(f"{key}.parameters", effect["parameters"]).items():
+        mine = f"{key}.parameters.{name}"
+        for end in ("estimate", "low", "high"):
+            _number_or_null(f"{mine}.{end}", _with_keys(mine, interval, end)[end])
+
+
+def _ranked(key: str, value: object) -> None:
+    hypothesis = _with_keys(key, value, "effects", "probability")
+    sequence(f"{key}.effects", hypothesis["effects"], "a list of names", _name)
+    number(f"{key}.probability", hypothesis["probability"])
+
+
+def _region(key: str, value: object) -> None:
+    region = _with_keys(key, value, "axis")
+    if _name(f"{key}.axis", region["axis"]) == "trial":
+        _name(f"{key}.value", _with_keys(key, region, "value")["value"])
+    elif "low" in region or "high" in region:
+        for end in ("low", "high"):
+            _number_or_null(f"{key}.{end}", _with_keys(key, region, end)[end])
+
+
+def _run(table: dict[str, Any]) -> None:
+    _with_keys("", table, "seconds", "threads", "version")
+    number("seconds", table["seconds"])
+    number("threads", table["threads"])
+    text("version", table["version"], "a version")
+
+
+def _repeat(table: dict[str, Any]) -> None:
+    _with_keys("", table, "seconds", "threads", "cores", "same")
+    number("seconds", table["seconds"])
+    number("threads", table["threads"])
+    # Not every system says how many cores a process may use.
+    _number_or_null("cores", table["cores"])
+    if not isinstance(table["same"], bool):
+        raise InputError("same", show(table["same"]), "true or false")
+
+
+def _with_keys(key: str, value: object, *names: str) -> Mapping[str, Any]:
+    """Return a table that has some keys, others being as good."""
+    table = require_table(key, value)
+    known_keys(key, table, table, names)
+    return table
+
+
+def _name(key: str, value: object) -> str:
+    return text(key, value, "a name")
+
+
+def _number_or_null(key: str, value: object) -> None:
+    if value is not None:
+        number(key, value)
