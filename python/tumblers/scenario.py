@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from dataclasses import field as attribute
+from math import inf
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
@@ -220,6 +221,15 @@ class Scenario:
         if isinstance(self.field, RotatingField):
             longest = min(longest, 1.0 / (_STEPS_PER_CYCLE * self.field.frequency_Hz))
         return longest
+
+    @property
+    def stability_bound_s(self) -> float:
+        """The step from which on ``start_of_step`` is unstable, s; infinite where the torque is taken otherwise."""
+        if self.magnetic_torque != "start_of_step":
+            return inf
+        # In a scheme that bears every step, and with the rows that fit one.
+        unsampled = replace(self, run=replace(self.run, output_every_s=None))
+        return unsampled.at_step(self.longest_step_s, "midpoint").trial().stability_bound_s
 
     def at_step(self, step_s: StepLength, magnetic_torque: MagneticTorque | None = None) -> Scenario:
         """Return the scenario with another step.

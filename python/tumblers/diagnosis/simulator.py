@@ -336,11 +336,9 @@ def longest_in(field: object) -> float:
 
 def longest_step_s(scenario: Scenario) -> float:
     """Return the step that is tried first, s: `longest_in` its field, halved to well within what is stable."""
-    longest = longest_in(scenario.field)
-    if scenario.model.magnetic_torque == "start_of_step":
-        bound = scenario.at_step(longest, "midpoint").trial().stability_bound_s
-        while longest > _STABLE * bound:
-            longest *= 0.5
+    longest, bound = longest_in(scenario.field), scenario.stability_bound_s
+    while longest > _STABLE * bound:
+        longest *= 0.5
     return longest
 
 
