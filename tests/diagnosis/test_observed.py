@@ -108,6 +108,7 @@ def test_neighbours_are_as_far_apart_as_what_is_compared() -> None:
     (observed,) = observe(dataset)
     assert len(observed.time_s) == 160
     assert observed.frame_interval_s == pytest.approx(0.01)
+    # There is one interval less than there are frames: a part in 160.
     assert observed.compared_interval_s == pytest.approx(float(np.mean(np.diff(observed.time_s))), rel=0.01)
     # What is 0.125 s apart counts as 0.16 s do, not eight for one.
     assert Comparison(dataset, Simulator(dataset, 1)).alike == pytest.approx(0.16 / 0.125, rel=0.02)

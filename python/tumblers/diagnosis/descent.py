@@ -30,7 +30,7 @@ _CHANGE, _LEAST_STEP, _MOST_STEP, _FIRST_STEP = 0.3, 1e-3, 5e-2, 1e-2
 # Derivatives of a step that is off by more than this factor are taken again.
 _RESTEPPED = 3.0
 # Where it ends: a step gains less than this share of the objective, moves by less than this share of the point, or
-# could gain no more than this slope says. What counts moves objectives by some units, in thousands.
+# could gain no more than this slope says. A choice.
 _SMALL_GAIN, _SMALL_STEP, _SMALL_SLOPE = 1e-3, 1e-4, 1e-3
 
 
@@ -130,7 +130,8 @@ class Descent:
         Parameters
         ----------
         evaluations
-            Trial points at most; where the trials' weights change by it, half as many follow once more. Of one, the
+            Trial points at most; where the trials' weights change by it, half as many, but two at least, follow once
+            more. Of one, the
             point is the start and only the derivatives there are taken.
         """
         point = self.start

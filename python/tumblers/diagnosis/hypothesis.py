@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..effects.base import Effect
 from ..effects.parameter import Nuisance
-from ..errors import EffectError, InputError, TumblersError, show
+from ..errors import EffectError, InputError, TumblersError
 from ..scenario import Scenario
 
 __all__ = ["PRIOR_SIGMA", "SECOND", "Hypothesis"]
@@ -226,10 +226,10 @@ class _Said(NamedTuple):
 
     @classmethod
     def of(cls, kind: type[Effect], scenario: Scenario) -> _Said:
-        count = len(kind.parameters)
         try:
             ranges, fit_ranges = (
-                np.array(found(scenario), dtype=np.float64) for found in (kind.ranges, kind.fit_ranges)
+                np.array(found(scenario), dtype=np.float64).reshape(len(kind.parameters), 2)
+                for found in (kind.ranges, kind.fit_ranges)
             )
             starts, close = ([kind.to_fit(s) for s in found(scenario)] for found in (kind.starts, kind.close_starts))
         except TumblersError:
@@ -238,8 +238,6 @@ class _Said(NamedTuple):
             raise EffectError(
                 f"{kind.name}: its ranges or starts failed with {type(error).__name__}: {error}"
             ) from error
-        if not ranges.shape == fit_ranges.shape == (count, 2):
-            raise EffectError(f"{kind.name}: ranges returned {show(ranges.tolist())}, expected {count} pairs")
         return cls(ranges, fit_ranges, starts, close)
 
 
