@@ -105,7 +105,7 @@ def test_what_is_less_probable_than_that_nothing_is_wrong_is_not_named(
     # Three of six count as the nominal model, which has their probability and their shares of what all have alike.
     share = LAPSE / 6
     nominal = contender("", 1.7, of_the_nominal_model + 3 * share)
-    merged = [contender(name, 1.7, 0.0) for name in ("magnetization_strength", "size_error")]
+    merged = [replace(contender(name, 1.7, 0.0), merged=True) for name in ("magnetization_strength", "size_error")]
     best, other = contender("viscous_drag", 1.0, 0.42 + share), contender("field_rolloff", 1.5, share)
     comparison = compared(COUNT)
     attribution = Attribution((best, nominal, *merged, other, contender("draft_angle", 1.7, share)), 1.0, True)
@@ -147,7 +147,7 @@ def test_between_what_evidence_ties_trials_left_out_decide(
     shares = share + (1.0 - LAPSE) * np.exp(evidence) / np.exp(evidence).sum()
     each = zip(names, left, shares, evidence, strict=True)
     made = [replace(contender(name, sigmas, float(p)), log_evidence=e) for name, sigmas, p, e in each]
-    rest = contender("", 2.0, 2.0 * share), contender("adhesion_coefficient", 2.0, 0.0)
+    rest = contender("", 2.0, 2.0 * share), replace(contender("adhesion_coefficient", 2.0, 0.0), merged=True)
     attribution = Attribution((*made, *(replace(c, log_evidence=-90.0) for c in rest)), 1.0, False)
     comparison = compared(COUNT)
     found = attribution.refusing(refused(comparison, made, lambda c: c.names[0] in standing))  # type: ignore[arg-type]
