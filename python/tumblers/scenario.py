@@ -228,8 +228,12 @@ class Scenario:
         if self.magnetic_torque != "start_of_step":
             return inf
         # In a scheme that bears every step, and with the rows that fit one.
-        unsampled = replace(self, run=replace(self.run, output_every_s=None))
-        return unsampled.at_step(self.longest_step_s, "midpoint").trial().stability_bound_s
+        return self.unsampled.at_step(self.longest_step_s, "midpoint").trial().stability_bound_s
+
+    @property
+    def unsampled(self) -> Self:
+        """The scenario that may have any step, as nothing says how far apart its rows are."""
+        return replace(self, run=replace(self.run, output_every_s=None))
 
     def at_step(self, step_s: StepLength, magnetic_torque: MagneticTorque | None = None) -> Scenario:
         """Return the scenario with another step.

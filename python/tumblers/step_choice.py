@@ -17,7 +17,7 @@ have converged (`docs/performance.md`).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import ceil
 from typing import Any
 
@@ -134,7 +134,8 @@ def choose_step(scenario: Scenario, *, threads: int | None = None, progress: boo
     runs: dict[float, tuple[_Key, _Key, _Key]] = {
         step: ((own, step), ("midpoint", step / 2.0), ("midpoint", step / 4.0)) for step in steps
     }
-    unsampled = _unsampled(scenario)
+    # Only the steps that are tried fit the rows that are kept.
+    unsampled = scenario.unsampled
     finest = steps[-1] / 4.0
     if scenario.run.duration_s / finest > MOST_STEPS:
         wanted = f"'{AUTO}', which may take steps of {finest:.3g} s, for {scenario.run.duration_s:g} s"
@@ -178,11 +179,6 @@ def with_chosen_step(
         return scenario, {}
     choice = choose_step(scenario, threads=threads, progress=progress)
     return choice.scenario, choice.attributes()
-
-
-def _unsampled(scenario: Scenario) -> Scenario:
-    """Return a scenario that may have any step: only the steps that are tried fit the rows that are kept."""
-    return replace(scenario, run=replace(scenario.run, output_every_s=None))
 
 
 def _steps_s(scenario: Scenario) -> list[float]:
