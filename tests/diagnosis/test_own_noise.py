@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
 from tumblers.diagnosis import own_noise
 from tumblers.diagnosis.contender import Contender
-from tumblers.diagnosis.own_noise import settled
+from tumblers.diagnosis.hypothesis import SECOND
+from tumblers.diagnosis.own_noise import against_the_best, each_by_itself, settled
 
 # Against the noise around another, and around itself.
 LENT = {"a": 1.0, "b": 2.0, "c": 3.0, "d": 4.0, "e": 5.0}
@@ -26,9 +28,9 @@ def test_what_was_fitted_before_and_leads_by_another_s_noise_is_first_held_again
     def contender(name: Any, cost: float) -> Contender:
         return Contender((name,), name, nothing, cost)
 
-    def fit_on(_fitter: Any, made: Contender) -> Contender:
-        fitted.append(made.names[0])
-        return replace(made, cost=OWN[made.names[0]], settled=True)
+    def fit_on(_fitter: Any, contender: Contender) -> Contender:
+        fitted.append(contender.names[0])
+        return replace(contender, cost=OWN[contender.names[0]], settled=True)
 
     def hold(_fitter: Any, fit: Any) -> Contender:
         held.append(fit)
@@ -36,7 +38,62 @@ def test_what_was_fitted_before_and_leads_by_another_s_noise_is_first_held_again
 
     monkeypatch.setattr(own_noise, "_settled", fit_on)
     monkeypatch.setattr(own_noise, "against_itself", hold)
-    made = settled(nothing, [contender(*each) for each in LENT.items()], lambda *_: None, fitted=before)
+    found = settled(nothing, [contender(*each) for each in LENT.items()], lambda *_: None, fitted=before)
     assert ("".join(fitted), "".join(held)) == expected
-    assert made[0].names == ("e",)
-    assert made[0].settled
+    assert found[0].names == ("e",)
+    assert found[0].settled
+
+
+def made(name: str, total: float, settled: bool = False) -> Contender:
+    """Return a contender whose fit is its name; one of two effects has them joined by a plus."""
+    fit: Any = name or None
+    nothing: Any = None
+    return Contender(tuple(filter(None, name.split("+"))), fit, nothing, total, settled=settled)
+
+
+def test_what_leads_by_another_s_noise_is_held_against_its_own_though_a_pair_is_likelier(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def hold(_fitter: Any, contender: Contender, _points: int) -> Contender:
+        return replace(contender, cost=4000.0, settled=True)
+
+    monkeypatch.setattr(own_noise, "by_itself", hold)
+    monkeypatch.setattr(own_noise, "_MOST_NEAR", 0)
+    fitter: Any = SimpleNamespace(comparison=SimpleNamespace(alike=1.0))
+    # The pair takes less off than a second effect must, so that the idle one would lead.
+    pair = made("cause+second", 100.0 - SECOND, settled=True)
+    found = each_by_itself(fitter, [pair, made("idle", 98.0), made("cause", 100.0, settled=True)], lambda *_: None)
+    assert [contender.names for contender in found] == [("cause",), ("cause", "second"), ("idle",)]
+
+
+@pytest.mark.parametrize(
+    ("of_the_moment", "settled", "own", "lent", "total"),
+    [
+        # Says the same, in a noise of its own: the best's is lent.
+        (150.0, True, 150.0, 110.0, 110.0),
+        # Near by the noise of the moment alone, and far by its own: nothing is lent.
+        (104.0, False, 4000.0, 104.0, 4000.0),
+        # Near by both.
+        (104.0, False, 150.0, 104.0, 104.0),
+        # Far by the noise of the moment too: it stays.
+        (3000.0, False, 4000.0, 104.0, 3000.0),
+    ],
+)
+def test_the_best_s_noise_is_lent_to_what_is_near_by_its_own(
+    of_the_moment: float, settled: bool, own: float, lent: float, total: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # By what is held, and around what.
+    totals = {("a", "a"): own, ("a", "best"): lent, ("best", "a"): own, ("", "best"): 5000.0, ("", ""): 5000.0}
+
+    def hold(_fitter: Any, contender: Contender, around: Contender) -> Contender:
+        return replace(contender, cost=totals["+".join(contender.names), "+".join(around.names)])
+
+    monkeypatch.setattr(own_noise, "beside", hold)
+    monkeypatch.setattr(
+        own_noise, "_with_slopes", lambda _fitter, contender, _around: replace(contender, settled=False)
+    )
+    nothing: Any = None
+    best, contender = made("best", 100.0, settled=True), made("a", of_the_moment, settled)
+    found = against_the_best(nothing, made("", 5000.0), [best, contender])
+    assert [c.names for c in found] == [("best",), (), ("a",)]
+    assert [c.total for c in found] == [100.0, 5000.0, total]

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..progress import OnPhase
-from .contender import Contender, likeliest_first, of_fit, of_nominal
+from .contender import Contender, likeliest_first, of_fit, of_nominal, parsimonious_total
 from .fit import Fit
 from .fitter import Fitter
 from .hypothesis import Hypothesis
@@ -161,6 +161,8 @@ def _settled(fitter: Fitter, contender: Contender) -> Contender:
 def each_by_itself(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase) -> list[Contender]:
     """Hold what comes near the best against its own noise too: another's may flatter it, or wrong it.
 
+    The best is the one that will lead: a pair is only if it adds as much as a second effect must.
+
     Parameters
     ----------
     fitter
@@ -169,8 +171,18 @@ def each_by_itself(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhas
         Without the nominal model.
     tell
         Is told the phase, how much of it is done, and of how much.
+
+    Returns
+    -------
+    list
+        The same, what leads first, which is settled.
     """
-    made = likeliest_first(contenders)
+    alike = fitter.comparison.alike
+
+    def best_first(those: Sequence[Contender]) -> list[Contender]:
+        return sorted(those, key=lambda contender: parsimonious_total(contender, alike))
+
+    made = best_first(contenders)
     count = 0
     # Where all of the nearest lost by it, the leader may be one that has not been held so.
     while count < _MOST_NEAR or not made[0].settled:
@@ -180,7 +192,7 @@ def each_by_itself(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhas
             break
         tell("each against its own noise", min(count, _MOST_NEAR), _MOST_NEAR)
         made[waiting[0]] = by_itself(fitter, made[waiting[0]], IDLE_POINTS)
-        made = likeliest_first(made)
+        made = best_first(made)
         count += 1
     return made
 
@@ -229,7 +241,7 @@ def against_the_best(fitter: Fitter, nominal: Contender, contenders: Sequence[Co
     """Hold all that come near the best against its noise too; of those that say the same, keep what is likelier.
 
     Near a threshold the noise around two hypotheses that say the same can differ by much. What is better than another
-    has to be so against one noise.
+    has to be so against one noise. What is near only by the noise of the moment is held against its own.
 
     Parameters
     ----------
@@ -244,19 +256,30 @@ def against_the_best(fitter: Fitter, nominal: Contender, contenders: Sequence[Co
     made = [best]
     for contender in (nominal, *contenders[1:]):
         near = contender.total <= best.total + NEAR
-        other = beside(fitter, contender, best) if near else contender
-        lent = other.total < contender.total and _says_the_same(fitter, contender, best, other)
-        made.append(_with_slopes(fitter, other, best) if lent else contender)
+        made.append(_lent(fitter, contender, best) if near else contender)
     return made
 
 
+def _lent(fitter: Fitter, contender: Contender, best: Contender) -> Contender:
+    """Return a contender against the noise around the best where that may be lent to it, else against its own."""
+    # An effect that does nothing would else look as good as the best by the best's noise, and the nominal model not.
+    own = contender if contender.settled or not contender.names else beside(fitter, contender, contender)
+    if own.total > best.total + NEAR:
+        return own
+    other = beside(fitter, own, best)
+    lent = other.total < own.total and _says_the_same(fitter, own, best, other)
+    return _with_slopes(fitter, other, best) if lent else own
+
+
 def _with_slopes(fitter: Fitter, lent: Contender, around: Contender) -> Contender:
-    """Return a contender against the noise around another, its derivatives against that too."""
+    """Return a contender against the noise around another, its derivatives against that too.
+
+    It does not count as settled: in shorter steps, or after another has led, it is held against its own noise first.
+    """
     if lent.fit is None:
         return lent
     fitter.take_likeliest_noise(lent.effects, around.effects)
-    fit = fitter.fit(lent.fit.hypothesis, lent.point, evaluations=1, steps=lent.fit.steps)
-    return replace(of_fit(fitter, fit), settled=lent.settled)
+    return of_fit(fitter, fitter.fit(lent.fit.hypothesis, lent.point, evaluations=1, steps=lent.fit.steps))
 
 
 def _says_the_same(fitter: Fitter, contender: Contender, best: Contender, lent: Contender) -> bool:
