@@ -16,6 +16,7 @@ from tumblers.blind.layout import STEADY_SIGMA
 from tumblers.blind.page import page_of, print_scores
 from tumblers.blind.records import Record, read_records
 from tumblers.blind.score import Scores, score_records
+from tumblers.blind.share import Share
 from tumblers.blind.ties import difference_sigma, effect_of
 from tumblers.dataset import Dataset, LabTrial, Outcome, Sensor
 from tumblers.diagnosis.floor import TOLERANCES
@@ -211,6 +212,26 @@ def test_calibration_is_that_computed_by_hand() -> None:
 def test_a_tie_that_simulation_does_not_bear_out_does_not_count() -> None:
     words = "one effect of 3 sigma or more: named first or truly tied"
     assert value(scored(tie_sigma=1.5), words) == 0.75
+
+
+@pytest.mark.parametrize(
+    ("named", "tie_sigma", "hits"),
+    [
+        (("friction_coefficient", "substrate_tilt"), 1.5, 1),
+        (("friction_coefficient", "stray_field_gradient"), 0.5, 1),
+        # Not by simulation; both in another's place; and one that is not named at all.
+        (("friction_coefficient", "stray_field_gradient"), 1.5, 0),
+        (("friction_anisotropy", "stray_field_gradient"), 0.5, 0),
+        (("friction_coefficient",), 0.5, 0),
+    ],
+)
+def test_of_two_effects_one_may_have_the_place_of_one_that_it_is_truly_tied_with(
+    named: tuple[str, ...], tie_sigma: float, hits: int
+) -> None:
+    diagnosis = said("explained", *((name, {}) for name in named), ties=("substrate_tilt", "friction_coefficient"))
+    scores = score_records([record(0, answer("two", FRICTION, TILT), diagnosis)], 7, lambda _: tie_sigma)
+    assert scores.both_or_tied == Share(hits, 1)
+    assert f"Of 1 with two effects, {hits} have both named, or one" in page_of(scores)
 
 
 def test_the_page_and_the_tables_show_every_criterion(capsys: pytest.CaptureFixture[str]) -> None:

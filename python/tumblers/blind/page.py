@@ -70,6 +70,7 @@ def page_of(scores: Scores) -> str:
             ],
         ),
         _explained(scores),
+        _tied_pairs(scores),
         "## One effect, by its strength",
         _table(
             ("strength, sigma", "named first", "of"),
@@ -200,11 +201,20 @@ def print_scores(scores: Scores) -> None:
         table.add_row(name, _percent(share.share), str(share.count))
     console.print(table)
     console.print(_explained(scores))
+    console.print(_tied_pairs(scores))
 
 
 def _explained(scores: Scores) -> str:
     said = scores.explained
     return f"Of {said.count} that are `explained`, {said.hits} name all that was at work and nothing else."
+
+
+def _tied_pairs(scores: Scores) -> str:
+    said = scores.both_or_tied
+    return (
+        f"Of {said.count} with two effects, {said.hits} have both named, or one of them and in the place of the other "
+        "one with which that is truly tied."
+    )
 
 
 def _criterion_row(criterion: Criterion) -> tuple[str, str, str, str]:
