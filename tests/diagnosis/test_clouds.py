@@ -1,0 +1,78 @@
+"""Clouds of points around a fit."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tumblers.diagnosis import search as searches
+from tumblers.diagnosis.clouds import found_by_clouds
+from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.contender import Contender
+from tumblers.diagnosis.fitter import Fitter
+from tumblers.diagnosis.hypothesis import Hypothesis
+from tumblers.diagnosis.own_noise import settled_at
+from tumblers.diagnosis.search import Search
+from tumblers.diagnosis.simulator import Simulator
+from tumblers.effects.friction_coefficient import FrictionCoefficient
+from tumblers.effects.surface_roughness import SurfaceRoughness
+
+from .lab import NOTHING, PLANS, measure, plan, quiet
+
+TRUTH = SurfaceRoughness(wavelength_m=1.5e-3, cosine_m=(0.0, 1e-6, 4e-6), sine_m=(0.0, -4e-6, -2e-6))
+
+
+def lab() -> tuple[Fitter, Hypothesis]:
+    dataset = measure(plan(PLANS[:2], duration_s=1.2), (TRUTH,))
+    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
+    (hypothesis,) = Search(fitter, [SurfaceRoughness], quiet, 0).possible
+    return fitter, hypothesis
+
+
+def point_of(effect: SurfaceRoughness, hypothesis: Hypothesis) -> Any:
+    return (np.array(effect.to_fit(effect.vector())) - hypothesis.neutral) / hypothesis.scale
+
+
+def test_a_wavelength_that_is_off_by_a_tenth_is_found_by_clouds() -> None:
+    fitter, hypothesis = lab()
+    off = replace(TRUTH, wavelength_m=1.1 * TRUTH.wavelength_m)
+    stuck = settled_at(fitter, hypothesis, point_of(off, hypothesis), evaluations=8)
+    right = settled_at(fitter, hypothesis, point_of(TRUTH, hypothesis), evaluations=8)
+    other, found = found_by_clouds(fitter, [stuck, stuck], [1], 0, quiet)
+    assert other is stuck
+    (effect,) = found.effects
+    assert isinstance(effect, SurfaceRoughness)
+    assert effect.wavelength_m == pytest.approx(TRUTH.wavelength_m, rel=0.003)
+    # From where it was stuck to within a twentieth of the way.
+    assert found.total < right.total + 0.05 * (stuck.total - right.total)
+
+
+@pytest.mark.parametrize(
+    ("names", "wanting", "asked"),
+    [
+        (("surface_roughness",), True, [0, 2]),
+        (("surface_roughness",), False, None),
+        # What leads has no relief.
+        (("friction_coefficient",), True, None),
+    ],
+)
+def test_only_where_a_relief_leads_and_a_gap_is_left_it_is_searched_again(
+    names: tuple[str, ...], wanting: bool, asked: list[int] | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    dataset = measure(plan(PLANS[:1]), ())
+    search = Search(Fitter(Comparison(dataset, Simulator(dataset))), [FrictionCoefficient, SurfaceRoughness], quiet, 0)
+    those = [names, ("friction_coefficient",), ("friction_coefficient", "surface_roughness")]
+    made = [Contender(each, None, NOTHING, 10.0 * k) for k, each in enumerate(those)]
+    told: list[list[int]] = []
+
+    def again(_fitter: Any, contenders: list[Contender], which: list[int], *_rest: Any) -> list[Contender]:
+        told.append(which)
+        return contenders
+
+    monkeypatch.setattr(searches, "found_by_clouds", again)
+    monkeypatch.setattr(searches, "is_wanting", lambda *_: wanting)
+    assert search._by_clouds(made) == made
+    assert told == ([] if asked is None else [asked])
