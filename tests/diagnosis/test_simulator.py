@@ -11,11 +11,12 @@ from tumblers.diagnosis.simulator import Job, Simulator
 from tumblers.effects.camera_calibration import CameraCalibration
 from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.effects.magnetization_strength import MagnetizationStrength
+from tumblers.effects.substrate_tilt import SubstrateTilt
 from tumblers.field import TableField
 from tumblers.model import Model
 from tumblers.presets import drive
 
-from .lab import plan, rollouts_made
+from .lab import PLANS, measure, plan, rollouts_made
 
 
 def jobs(first: int, count: int) -> list[Job]:
@@ -108,3 +109,30 @@ def test_a_scheme_that_is_unstable_in_long_steps_is_run_in_shorter_ones(strength
         assert simulator.run([job])[0] is not None
     simulator.lengthen_steps()
     assert simulator.run([Job(0)])[0] is not None
+
+
+def test_a_run_that_is_drawn_to_its_track_stays_near_it_and_is_kept_for_itself() -> None:
+    dataset = measure(plan(PLANS[:2], duration_s=1.0), (SubstrateTilt(slope_y_deg=10.0),))
+    simulator = Simulator(dataset, 1)
+    free, drawn, other = simulator.run([Job(0), Job(0, rate_per_s=50.0), Job(1, rate_per_s=50.0)])
+    off = []
+    for i, path in ((0, free), (0, drawn), (1, other)):
+        track = dataset.trials[i].track
+        assert path is not None
+        assert track is not None
+        off.append(float(np.nanmax(np.abs(path.at(track.time_s)[0][:, 1] - track.channels["y_m"]))))
+    # Without the tilt it would be elsewhere in the end.
+    assert off[0] > 3e-4
+    assert max(off[1:]) < 0.5 * off[0]
+    again = simulator.run([Job(0)])[0]
+    assert again is not None
+    assert free is not None
+    np.testing.assert_array_equal(again.position_m, free.position_m)
+
+
+def test_without_a_track_a_run_is_on_its_own() -> None:
+    simulator = Simulator(plan(), 1)
+    free, drawn = simulator.run([Job(0), Job(0, rate_per_s=50.0)])
+    assert free is not None
+    assert drawn is not None
+    np.testing.assert_array_equal(free.position_m, drawn.position_m)

@@ -87,3 +87,23 @@ def test_metrics(frequency_Hz: float) -> None:
     assert core["drift_m"] == pytest.approx(reference.drift(other, frequency_Hz), rel=1e-7)
     assert core["twist_rad"] == pytest.approx(reference.cycle_twist(other, frequency_Hz), abs=turn**3 + POSE)
     assert abs(core["twist_rad"]) > 1e-3
+
+
+@pytest.mark.parametrize("rate_per_s", [5.0, 100.0])
+def test_what_a_guide_makes_of_a_run(rate_per_s: float) -> None:
+    """After each step the reference is moved by (1 - e^(-γh)) of the way to its guide."""
+    twin = Twin.of(preset_scenario("cuboid_on_paper", duration_s=0.1))
+    trial, times, places = twin.reference, np.array([0.0, 0.03, 0.08]), np.array([0.0, -2e-4, 6e-4])
+    (core,) = _core.rollouts([twin.core.guided(times, places, rate_per_s)], [1])
+    state, share = trial.resting_state(), -np.expm1(-rate_per_s * trial.step)
+    force, centroid = trial.adhesion_at(state)
+    positions = [state.position]
+    for i in range(round(trial.duration / trial.step)):
+        end = reference.step(trial, state, i * trial.step, force, centroid).state
+        shift = share * (np.interp((i + 1) * trial.step, times, places) - end.position[1])
+        state = replace(end, position=end.position + np.array([0.0, shift, 0.0]))
+        force, centroid = trial.adhesion_at(state)
+        positions.append(state.position)
+    np.testing.assert_allclose(core["position_m"], positions, rtol=0.0, atol=POSE * trial.body.radius)
+    (free,) = _core.rollouts([twin.core], [1])
+    assert np.abs(core["position_m"] - free["position_m"]).max() > 1e-5

@@ -28,6 +28,10 @@ pub enum Invalid {
     TableLength { found: usize, expected: usize },
     #[error("row {row} of wrench_time_s is at {found} s, expected a time after {before} s")]
     WrenchOrder { row: usize, found: f64, before: f64 },
+    #[error("row {row} of the guide is at {found} s, expected a time after {before} s")]
+    GuideOrder { row: usize, found: f64, before: f64 },
+    #[error("the guide has no row, expected at least 1")]
+    NoGuide,
     #[error("{name} has {found} entries, expected {expected}")]
     Lengths { name: &'static str, found: usize, expected: usize },
     #[error("time_s is {found}, expected a multiple of step_s {step}")]

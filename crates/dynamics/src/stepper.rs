@@ -135,6 +135,9 @@ impl<'a> Stepper<'a> {
         self.state.position += self.solution.linear * h;
         self.state.orientation = advance(&self.state.orientation, &self.solution.angular, h);
         self.done += 1;
+        if let Some(guide) = self.trial.guide() {
+            self.state.position.y += guide.shift(self.state.position.y, self.time(), h);
+        }
         self.warm.support = self.solution.support;
         self.warm.unknowns.angular = self.solution.angular;
         self.settle(self.solution.normal > 0.0);

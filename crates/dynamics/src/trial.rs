@@ -3,7 +3,7 @@
 use crate::contact::downward;
 use crate::error::{Invalid, finite, not_negative, positive};
 use crate::rotation::matrix;
-use crate::{Field, MagneticTorque, Mat3, Model, Relief, Robot, State, Substrate, Surroundings, Vec3};
+use crate::{Field, Guide, MagneticTorque, Mat3, Model, Relief, Robot, State, Substrate, Surroundings, Vec3};
 use geometry::Support;
 use nalgebra::Quaternion;
 
@@ -55,6 +55,7 @@ pub struct Trial {
     support: Support,
     weight: Vec3,
     steps: u64,
+    guide: Option<Guide>,
 }
 
 impl Trial {
@@ -116,7 +117,18 @@ impl Trial {
         let (side_sin, side_cos) = parts.side_incline.sin_cos();
         // 0 - 0 is +0, and so is the force along x on a substrate that does not lean.
         let weight = Vec3::new(0.0 - weight * side_sin, -weight * sin * side_cos, -weight * cos * side_cos);
-        Ok(Self { parts, initial, support, weight, steps: found as u64 })
+        Ok(Self { parts, initial, support, weight, steps: found as u64, guide: None })
+    }
+
+    /// The same trial, drawn to a guide.
+    pub fn guided(self, guide: Guide) -> Self {
+        Self { guide: Some(guide), ..self }
+    }
+
+    /// What the run is drawn to.
+    #[inline]
+    pub fn guide(&self) -> Option<&Guide> {
+        self.guide.as_ref()
     }
 
     /// What moves.

@@ -4,7 +4,7 @@ use crate::body::PyBody;
 use crate::convert::{choose, quaternion, refused};
 use crate::field::PyField;
 use dynamics::{
-    AdhesionActsAt, AdhesionEnters, MagneticTorque, Model, Relief, Robot, Substrate, Surroundings, Trial, Vec3,
+    AdhesionActsAt, AdhesionEnters, Guide, MagneticTorque, Model, Relief, Robot, Substrate, Surroundings, Trial, Vec3,
     trial::TrialParts,
 };
 use pyo3::prelude::*;
@@ -117,6 +117,12 @@ impl PyTrial {
             angular: angular_velocity_rad_per_s.into(),
         };
         Trial::new(parts).map(Self).map_err(refused)
+    }
+
+    #[pyo3(signature = (time_s, y_m, rate_per_s))]
+    fn guided(&self, time_s: Vec<f64>, y_m: Vec<f64>, rate_per_s: f64) -> PyResult<Self> {
+        let guide = Guide::new(&time_s, &y_m, rate_per_s).map_err(refused)?;
+        Ok(Self(self.0.clone().guided(guide)))
     }
 
     #[getter]

@@ -54,7 +54,12 @@ class Objective:
         self.trials = tuple(range(len(comparison.readers)))
 
     def residuals(
-        self, hypothesis: Hypothesis, points: Sequence[Floats], train: Sequence[int] | None = None, share: float = 1.0
+        self,
+        hypothesis: Hypothesis,
+        points: Sequence[Floats],
+        train: Sequence[int] | None = None,
+        share: float = 1.0,
+        rate_per_s: float = 0.0,
     ) -> list[Residual]:
         """Return how wrong a hypothesis is at each of some points: one native batch.
 
@@ -66,12 +71,14 @@ class Objective:
             Trials that are simulated and from which the camera is fitted; all if None. The others count as not run.
         share
             Of each trial's time that counts.
+        rate_per_s
+            How fast the runs are drawn to where the robot was seen, 1/s.
         """
         chosen = self.trials if train is None else tuple(train)
         jobs = []
         for point in points:
             effects = hypothesis.effects(point)
-            jobs += [Job(i, effects, share=share) for i in chosen]
+            jobs += [Job(i, effects, share=share, rate_per_s=rate_per_s) for i in chosen]
         paths = self.comparison.simulator.run(jobs)
         runs = []
         for k in range(len(points)):

@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 from ..effects.base import Effect
 from ..progress import OnPhase
 from .beginnings import MANY, beginning, from_beginnings, promise
-from .clouds import found_by_clouds
 from .conclusion import concluded, resolved
 from .contender import Contender, likeliest, likeliest_first, of_fit, of_nominal
 from .counterpart import with_counterparts
 from .fitter import Fitter
+from .guided import found_again
 from .hypothesis import Hypothesis
 from .nearby import all_shaken, shaken
 from .own_noise import IDLE_POINTS, MOST_OWN, NEAR, OWN, again, by_itself, settled
@@ -47,8 +47,8 @@ _REFINED, _PROMISING = 2, 4
 # The leader of before, found farther away, is a new first of pairs where that takes more than this share of what it
 # leaves off the objective.
 _FARTHER = 0.1
-# Of the best that have many minima beside one another, so many are searched by clouds.
-_CLOUDED = 3
+# Of the best that have many minima beside one another, so many are searched by runs that are drawn to the tracks.
+_GUIDED = 3
 
 
 class Search:
@@ -134,7 +134,7 @@ class Search:
         held = again(self.fitter, [c if c.total <= near else replace(c, settled=False) for c in found])
         made = settled(self.fitter, held, self.tell, fitted=True)
         made = likeliest_first([shaken(self.fitter, made[0], self.seed, self.tell), *made[1:]])
-        made = self._by_clouds(made)
+        made = self._guided(made)
         if len(made[0].names) == 1:
             return made
         singles, pairs = ([c for c in made if len(c.names) == count] for count in (1, 2))
@@ -148,13 +148,13 @@ class Search:
         single = nested(self.fitter, singles[0], made[:1])
         return likeliest_first([single, *(c for c in made if c is not singles[0])])
 
-    def _by_clouds(self, made: Sequence[Contender]) -> list[Contender]:
-        """Search around the best again by clouds of points, where there are many minima and a gap is left."""
+    def _guided(self, made: Sequence[Contender]) -> list[Contender]:
+        """Search around the best again by runs drawn to the tracks, where there are many minima and a gap is left."""
         many = {h.names[0] for h in self.possible if len(h.close) > len(h.starts)}
         if many.isdisjoint(made[0].names) or not is_wanting(self.comparison, made[0].residual):
             return list(made)
-        which = [k for k, contender in enumerate(made) if not many.isdisjoint(contender.names)][:_CLOUDED]
-        return likeliest_first(found_by_clouds(self.fitter, made, which, self.seed, self.tell))
+        which = [k for k, contender in enumerate(made) if not many.isdisjoint(contender.names)][:_GUIDED]
+        return likeliest_first(found_again(self.fitter, made, which, self.seed, self.tell))
 
     def _far_and_wide(self, nominal: Contender) -> list[Contender]:
         """Search over the whole ranges, add second effects, look for what does the same; the likeliest first."""

@@ -7,13 +7,14 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import ceil, inf
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
 from ..camera import Camera
-from ..dataset import Dataset
+from ..dataset import Dataset, LabTrial
 from ..effects.base import Effect
 from ..errors import InputError, TumblersError
 from ..field import RotatingField, TableField
@@ -61,6 +62,8 @@ class Job:
         A change of the scenario beside the effects.
     share
         How much of the trial's time is simulated, up to 1.
+    rate_per_s
+        How fast the run is drawn along y to where the robot was seen, 1/s. At 0, or without a track, it is on its own.
     """
 
     trial: int
@@ -68,6 +71,15 @@ class Job:
     divisor: int = 1
     edit: Edit | None = None
     share: float = 1.0
+    rate_per_s: float = 0.0
+
+
+class _Run(NamedTuple):
+    """What moves: a scenario under a perfect camera, the trial to whose track it is drawn, and how fast, 1/s."""
+
+    scenario: Scenario
+    towards: int | None
+    rate_per_s: float
 
 
 class Simulator:
@@ -90,7 +102,8 @@ class Simulator:
         self._check()
         self.step_s = self._longest_s()
         self._nominal: dict[tuple[int, float], Scenario] = {}
-        self._known: OrderedDict[Scenario, Path | None] = OrderedDict()
+        self._guides = [_guide(trial) for trial in dataset.trials]
+        self._known: OrderedDict[_Run, Path | None] = OrderedDict()
         self._kept = 0
 
     def _longest_s(self) -> list[float]:
@@ -243,20 +256,20 @@ class Simulator:
         """
         scenarios = [self._possible(job) for job in jobs]
         # A camera changes what is seen, not what moves.
-        moving = [None if s is None else _unseen(s) for s in scenarios]
-        new = list(dict.fromkeys(s for s in moving if s is not None and s not in self._known))
+        moving = [None if s is None else self._run_of(s, job) for s, job in zip(scenarios, jobs, strict=True)]
+        new = list(dict.fromkeys(run for run in moving if run is not None and run not in self._known))
         trials: list[_core.Trial] = []
-        runnable: list[Scenario] = []
-        for scenario in new:
+        runnable: list[_Run] = []
+        for run in new:
             with suppress(TumblersError):
-                trials.append(scenario.trial())
-                runnable.append(scenario)
-        every = [_rows_every(scenario) for scenario in runnable]
+                trials.append(self._native(run))
+                runnable.append(run)
+        every = [_rows_every(run.scenario) for run in runnable]
         with native_call("rollouts", len(trials), progress=False) as on_progress:
             # Poses are all that is asked for. What spins faster than its steps show has left every view, and is slow.
             results = _core.rollouts(trials, every, self.threads, on_progress, while_resolved=True, verified=False)
-        for scenario, result, rows in zip(runnable, results, every, strict=True):
-            self._known[scenario] = path = self._path(scenario, result, rows)
+        for run, result, rows in zip(runnable, results, every, strict=True):
+            self._known[run] = path = self._path(run.scenario, result, rows)
             self._kept += _size(path)
         paths = [
             None if seen is None or moved is None else _seen(self._known.get(moved), seen.camera)
@@ -265,6 +278,14 @@ class Simulator:
         while self._kept > _MOST_KEPT and len(self._known) > 1:
             self._kept -= _size(self._known.popitem(last=False)[1])
         return paths
+
+    def _run_of(self, scenario: Scenario, job: Job) -> _Run:
+        guided = job.rate_per_s > 0.0 and self._guides[job.trial] is not None
+        return _Run(_unseen(scenario), job.trial if guided else None, job.rate_per_s if guided else 0.0)
+
+    def _native(self, run: _Run) -> _core.Trial:
+        trial, guide = run.scenario.trial(), None if run.towards is None else self._guides[run.towards]
+        return trial if guide is None else trial.guided(*guide, run.rate_per_s)
 
     def _possible(self, job: Job) -> Scenario | None:
         with suppress(InputError):
@@ -294,6 +315,15 @@ class Simulator:
             orientation=orientation,
             contact_mode=rollout["contact_mode"][:rows],
         )
+
+
+def _guide(trial: LabTrial) -> tuple[Floats, Floats] | None:
+    """Return when a robot was seen, s, and where along y, m; None where it never was."""
+    if trial.track is None or "y_m" not in trial.track.channels:
+        return None
+    place = trial.track.channels["y_m"]
+    seen = np.isfinite(place)
+    return (trial.track.time_s[seen], place[seen]) if seen.any() else None
 
 
 def _unseen(scenario: Scenario) -> Scenario:

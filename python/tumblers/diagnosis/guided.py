@@ -1,14 +1,22 @@
-"""`found_by_clouds`: a better minimum beside a fit, where there are many.
+"""`found_again`: a fit from runs that are drawn to where the robot was seen.
 
 Over a relief a wavelength that is off by one part in a hundred has lost the data's phase some waves on, and there the
-objective has a minimum of its own; and motion that hops makes it rough, so that least squares stop at every hop. What
-comes near is searched by clouds of points, whose mean and covariance follow the best of them (CMA-ES; Hansen and
-Ostermeier 2001, Evol. Comput. 9, 159): first in the longer steps, then in the right ones, as long as that helps.
+objective has a minimum of its own. A run that is drawn to its track,
+
+```text
+y ← y + (1 - e^(-γh)) (ŷ(t) - y)
+```
+
+loses no phase (Abarbanel and others 2009, SIAM J. Appl. Dyn. Syst. 8, 1341); as γ falls, the objective comes back to
+the one that is asked for. Motion that hops leaves it rough, so that least squares stop at every hop: it is searched
+by clouds of points whose covariance adapts (CMA-ES; Hansen and Ostermeier 2001, Evol. Comput. 9, 159), in the longer
+steps as long as runs are drawn.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import nullcontext
 
 import numpy as np
 from cmaes import CMA
@@ -20,25 +28,24 @@ from .fitter import Fitter
 from .hypothesis import Hypothesis
 from .own_noise import settled, settled_at
 
-__all__ = ["found_by_clouds"]
+__all__ = ["found_again"]
 
 Floats = NDArray[np.float64]
 
-# Points of a cloud, and how wide the first is: a share of each range, or of its value for a parameter that has one
-# wherever the effect acts.
+# The rates γ, 1/s, one after another, with how many clouds each and how wide the first is: of so many points, and in
+# shares of the ranges, or of its value for a parameter that has one wherever the effect acts. From where the search of
+# a dataset with a known relief had ended, such clouds led to it, or near it, with two of three companions, and as many
+# clouds of runs on their own with none; in a small lab both lead to it.
+_RATES = ((20.0, 30, 1.0), (5.0, 15, 0.6), (0.0, 15, 0.4))
 _CLOUD, _SPREAD = 16, 0.05
-# Clouds in the longer steps; and in the right ones, once and again from where they ended while that takes off this
-# share of the objective; how wide the first ones are then, in shares of the above. In a small lab with a known relief
-# wavelengths that were off by 4 to 10 % either way were found with each of three seeds.
-_COARSE, _FINE, _WIDTHS, _GAIN = 30, 20, (0.6, 0.4, 0.4), 0.05
 # Trial points of the fit from where the last cloud ends.
 _LAST_POINTS = 12
 
 
-def found_by_clouds(
+def found_again(
     fitter: Fitter, contenders: Sequence[Contender], which: Sequence[int], seed: int, tell: OnPhase
 ) -> list[Contender]:
-    """Search around some contenders, and keep what is likelier.
+    """Search around some contenders by runs that are drawn to the tracks, and keep what is likelier.
 
     Parameters
     ----------
@@ -55,23 +62,19 @@ def found_by_clouds(
     """
     made = list(contenders)
     for n, k in enumerate(which):
-        tell("clouds around the best", n, len(which))
-        made[k] = _found(fitter, contenders[k], seed, tell)
+        tell("runs drawn to the tracks", n, len(which))
+        made[k] = _found_again(fitter, contenders[k], seed, tell)
     return made
 
 
-def _found(fitter: Fitter, contender: Contender, seed: int, tell: OnPhase) -> Contender:
+def _found_again(fitter: Fitter, contender: Contender, seed: int, tell: OnPhase) -> Contender:
     assert contender.fit is not None
     hypothesis, point = contender.fit.hypothesis, contender.point
     spread = _spread(hypothesis, point)
-    with fitter.comparison.in_longer_steps():
-        fitter.take_likeliest_noise(contender.effects)
-        _, point = _least(fitter, hypothesis, point, spread, _COARSE, seed)
-    for width in _WIDTHS:
-        fitter.take_likeliest_noise(hypothesis.effects(point))
-        gain, point = _least(fitter, hypothesis, point, width * spread, _FINE, seed)
-        if gain < _GAIN:
-            break
+    for rate, clouds, width in _RATES:
+        with fitter.comparison.in_longer_steps() if rate > 0.0 else nullcontext():
+            fitter.take_likeliest_noise(hypothesis.effects(point))
+            point = _least_by_clouds(fitter, hypothesis, point, width * spread, rate, clouds, seed)
     (other,) = settled(fitter, [settled_at(fitter, hypothesis, point, _LAST_POINTS)], tell)
     return likeliest([contender, other])
 
@@ -83,28 +86,27 @@ def _spread(hypothesis: Hypothesis, point: Floats) -> Floats:
     return _SPREAD * np.where(always & (value > 0.0), value, 1.0)
 
 
-def _least(
-    fitter: Fitter, hypothesis: Hypothesis, start: Floats, spread: Floats, clouds: int, seed: int
-) -> tuple[float, Floats]:
-    """Return what share of the objective the best point of some clouds around a start takes off, and that point."""
+def _least_by_clouds(
+    fitter: Fitter, hypothesis: Hypothesis, start: Floats, spread: Floats, rate: float, clouds: int, seed: int
+) -> Floats:
+    """Return the best point of some clouds, the first around a start, or the start, against the noise of the moment."""
     free = hypothesis.high > hypothesis.low
     bounds = np.column_stack([hypothesis.low, hypothesis.high])[free] / spread[free, None]
     cloud = CMA(mean=start[free] / spread[free], sigma=1.0, bounds=bounds, seed=seed, population_size=_CLOUD)
-    (before,) = _costs(fitter, hypothesis, [start])
-    best, least = start, before
+    best, least = start, _costs(fitter, hypothesis, [start], rate)[0]
     for _ in range(clouds):
         asked = [cloud.ask() for _ in range(_CLOUD)]
         points = [start.copy() for _ in asked]
         for point, values in zip(points, asked, strict=True):
             point[free] = values * spread[free]
-        costs = _costs(fitter, hypothesis, points)
+        costs = _costs(fitter, hypothesis, points, rate)
         cloud.tell(list(zip(asked, costs, strict=True)))
         k = int(np.argmin(costs))
         if costs[k] < least:
             best, least = points[k], costs[k]
-    return 1.0 - least / max(before, 1e-300), best
+    return best
 
 
-def _costs(fitter: Fitter, hypothesis: Hypothesis, points: Sequence[Floats]) -> list[float]:
-    found = fitter.residuals(hypothesis, points)
+def _costs(fitter: Fitter, hypothesis: Hypothesis, points: Sequence[Floats], rate: float) -> list[float]:
+    found = fitter.residuals(hypothesis, points, rate_per_s=rate)
     return [fitter.cost(residual, point) for residual, point in zip(found, points, strict=True)]

@@ -1,4 +1,4 @@
-"""Clouds of points around a fit."""
+"""Fits from runs that are drawn to where the robot was seen."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from tumblers.diagnosis import search as searches
-from tumblers.diagnosis.clouds import found_by_clouds
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.contender import Contender
 from tumblers.diagnosis.fitter import Fitter
+from tumblers.diagnosis.guided import found_again
 from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.own_noise import settled_at
 from tumblers.diagnosis.search import Search
@@ -36,12 +36,12 @@ def point_of(effect: SurfaceRoughness, hypothesis: Hypothesis) -> Any:
     return (np.array(effect.to_fit(effect.vector())) - hypothesis.neutral) / hypothesis.scale
 
 
-def test_a_wavelength_that_is_off_by_a_tenth_is_found_by_clouds() -> None:
+def test_a_wavelength_that_is_off_by_a_tenth_is_found_by_runs_that_are_drawn_to_the_tracks() -> None:
     fitter, hypothesis = lab()
     off = replace(TRUTH, wavelength_m=1.1 * TRUTH.wavelength_m)
     stuck = settled_at(fitter, hypothesis, point_of(off, hypothesis), evaluations=8)
     right = settled_at(fitter, hypothesis, point_of(TRUTH, hypothesis), evaluations=8)
-    other, found = found_by_clouds(fitter, [stuck, stuck], [1], 0, quiet)
+    other, found = found_again(fitter, [stuck, stuck], [1], 0, quiet)
     assert other is stuck
     (effect,) = found.effects
     assert isinstance(effect, SurfaceRoughness)
@@ -72,7 +72,7 @@ def test_only_where_a_relief_leads_and_a_gap_is_left_it_is_searched_again(
         told.append(which)
         return contenders
 
-    monkeypatch.setattr(searches, "found_by_clouds", again)
+    monkeypatch.setattr(searches, "found_again", again)
     monkeypatch.setattr(searches, "is_wanting", lambda *_: wanting)
-    assert search._by_clouds(made) == made
+    assert search._guided(made) == made
     assert told == ([] if asked is None else [asked])
