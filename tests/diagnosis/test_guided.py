@@ -18,6 +18,7 @@ from tumblers.diagnosis.own_noise import settled_at
 from tumblers.diagnosis.search import Search
 from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects.friction_coefficient import FrictionCoefficient
+from tumblers.effects.magnetization_strength import MagnetizationStrength
 from tumblers.effects.surface_roughness import SurfaceRoughness
 
 from .lab import NOTHING, PLANS, measure, plan, quiet
@@ -48,6 +49,15 @@ def test_a_wavelength_that_is_off_by_a_tenth_is_found_by_runs_that_are_drawn_to_
     assert effect.wavelength_m == pytest.approx(TRUTH.wavelength_m, rel=0.003)
     # From where it was stuck to within a twentieth of the way.
     assert found.total < right.total + 0.05 * (stuck.total - right.total)
+
+
+def test_what_has_one_parameter_alone_has_no_cloud() -> None:
+    dataset = measure(plan(PLANS[:1]), ())
+    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
+    (hypothesis,) = Search(fitter, [MagnetizationStrength], quiet, 0).possible
+    alone = settled_at(fitter, hypothesis, np.zeros(1))
+    assert alone.free == 1
+    assert found_again(fitter, [alone], [0], 0, quiet) == [alone]
 
 
 @pytest.mark.parametrize(

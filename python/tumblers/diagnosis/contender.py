@@ -40,7 +40,7 @@ class Contender:
     step_credit
         What the shorter steps that it is run in take off the objective by themselves: it is added again.
     settled
-        Whether its derivatives are of a fit against the noise around itself, which the best's was not lent to.
+        Whether its derivatives are of a fit against the noise around itself; not of one that the best's was lent to.
     log_likelihood
         What of ln Z the fit makes: minus half the objective there and ln det of its noise, over the dispersion.
     log_evidence

@@ -69,6 +69,9 @@ def found_again(
 
 def _found_again(fitter: Fitter, contender: Contender, seed: int, tell: OnPhase) -> Contender:
     assert contender.fit is not None
+    # A cloud has two dimensions at least; along a line a fit finds its way.
+    if contender.free < 2:
+        return contender
     hypothesis, point = contender.fit.hypothesis, contender.point
     spread = _spread(hypothesis, point)
     for rate, clouds, width in _RATES:
