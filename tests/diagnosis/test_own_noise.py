@@ -11,7 +11,7 @@ import pytest
 from tumblers.diagnosis import own_noise
 from tumblers.diagnosis.contender import Contender
 from tumblers.diagnosis.hypothesis import SECOND
-from tumblers.diagnosis.own_noise import against_the_best, each_by_itself, settled
+from tumblers.diagnosis.own_noise import again, against_the_best, each_by_itself, settled
 
 # Against the noise around another, and around itself.
 LENT = {"a": 1.0, "b": 2.0, "c": 3.0, "d": 4.0, "e": 5.0}
@@ -97,3 +97,36 @@ def test_the_best_s_noise_is_lent_to_what_is_near_by_its_own(
     found = against_the_best(nothing, made("", 5000.0), [best, contender])
     assert [c.names for c in found] == [("best",), (), ("a",)]
     assert [c.total for c in found] == [100.0, 5000.0, total]
+
+
+def test_what_is_near_by_its_own_noise_and_is_lent_none_has_its_slopes_against_its_own(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # By what is held, and around what: it says something else than the best.
+    totals = {("a", "a"): 150.0, ("a", "best"): 104.0, ("best", "a"): 50.0, ("", "best"): 5000.0}
+    sloped: list[tuple[tuple[str, ...], int]] = []
+
+    def hold(_fitter: Any, contender: Contender, around: Contender) -> Contender:
+        return replace(contender, cost=totals["+".join(contender.names), "+".join(around.names)])
+
+    def by_itself(_fitter: Any, contender: Contender, evaluations: int) -> Contender:
+        sloped.append((contender.names, evaluations))
+        return replace(contender, settled=True)
+
+    monkeypatch.setattr(own_noise, "beside", hold)
+    monkeypatch.setattr(own_noise, "by_itself", by_itself)
+    nothing: Any = None
+    best = made("best", 100.0, settled=True)
+    *_, found = against_the_best(nothing, made("", 5000.0), [best, made("a", 104.0)])
+    assert (found.total, found.settled, found.lent) == (150.0, True, False)
+    assert sloped == [(("a",), 1)]
+
+
+def test_what_was_lent_a_noise_is_held_against_its_own_in_other_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(own_noise, "of_fit", lambda _fitter, fit: made(fit, 1.0))
+    monkeypatch.setattr(own_noise, "against_itself", lambda _fitter, fit: made(fit, 2.0))
+    fitter: Any = SimpleNamespace(again=lambda fit: fit)
+    lent = replace(made("lent", 9.0), lent=True)
+    found = again(fitter, [made("", 9.0), made("settled", 9.0, settled=True), lent, made("far", 9.0)])
+    assert {c.names: c.total for c in found} == {("far",): 1.0, ("settled",): 2.0, ("lent",): 2.0}
+    assert not any(c.settled or c.lent for c in found)

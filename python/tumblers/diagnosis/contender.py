@@ -41,6 +41,8 @@ class Contender:
         What the shorter steps that it is run in take off the objective by themselves: it is added again.
     settled
         Whether its derivatives are of a fit against the noise around itself; not of one that the best's was lent to.
+    lent
+        Whether the noise is that around the best, and it is near by its own too.
     log_likelihood
         What of ln Z the fit makes: minus half the objective there and ln det of its noise, over the dispersion.
     log_evidence
@@ -58,6 +60,7 @@ class Contender:
     log_determinant: float = 0.0
     step_credit: float = 0.0
     settled: bool = False
+    lent: bool = False
     log_likelihood: float = 0.0
     log_evidence: float = 0.0
     probability: float = 0.0

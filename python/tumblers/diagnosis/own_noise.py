@@ -58,7 +58,9 @@ NEAR, _MOST_NEAR = 300.0, 6
 
 
 def again(fitter: Fitter, contenders: Sequence[Contender]) -> list[Contender]:
-    """Hold the same fits against the noise of the moment, what was settled against its own; the likeliest first.
+    """Hold the same fits against the noise of the moment, or their own; the likeliest first.
+
+    Their own is for what was settled, or near the best by its own when that one's was lent to it.
 
     None of them counts as settled. The noise may be left around any of them.
 
@@ -69,12 +71,10 @@ def again(fitter: Fitter, contenders: Sequence[Contender]) -> list[Contender]:
     contenders
         The nominal model among them is left out.
     """
-    others = [contender for contender in contenders if not contender.settled]
-    made = [of_fit(fitter, fitter.again(contender.fit)) for contender in others if contender.fit is not None]
+    own = [contender.settled or contender.lent for contender in contenders]
+    made = [of_fit(fitter, fitter.again(c.fit)) for c, by in zip(contenders, own, strict=True) if c.fit and not by]
     # At a threshold, which another step moves, the point itself may look hopeless against the nominal model's.
-    for contender in contenders:
-        if contender.settled and contender.fit is not None:
-            made.append(against_itself(fitter, contender.fit))
+    made += [against_itself(fitter, c.fit) for c, by in zip(contenders, own, strict=True) if c.fit and by]
     return likeliest_first(made)
 
 
@@ -267,8 +267,9 @@ def _lent(fitter: Fitter, contender: Contender, best: Contender) -> Contender:
     if own.total > best.total + NEAR:
         return own
     other = beside(fitter, own, best)
-    lent = other.total < own.total and _says_the_same(fitter, own, best, other)
-    return _with_slopes(fitter, other, best) if lent else own
+    if other.total < own.total and _says_the_same(fitter, own, best, other):
+        return _with_slopes(fitter, other, best)
+    return own if own.settled or own.fit is None else by_itself(fitter, own, evaluations=1)
 
 
 def _with_slopes(fitter: Fitter, lent: Contender, around: Contender) -> Contender:
@@ -279,7 +280,8 @@ def _with_slopes(fitter: Fitter, lent: Contender, around: Contender) -> Contende
     if lent.fit is None:
         return lent
     fitter.take_likeliest_noise(lent.effects, around.effects)
-    return of_fit(fitter, fitter.fit(lent.fit.hypothesis, lent.point, evaluations=1, steps=lent.fit.steps))
+    fit = fitter.fit(lent.fit.hypothesis, lent.point, evaluations=1, steps=lent.fit.steps)
+    return replace(of_fit(fitter, fit), lent=True)
 
 
 def _says_the_same(fitter: Fitter, contender: Contender, best: Contender, lent: Contender) -> bool:
