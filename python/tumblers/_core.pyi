@@ -215,7 +215,7 @@ class Trial:
         wrench_N_N_m: _Rows = ...,
         friction_drift_per_s: float = 0.0,
     ) -> Trial: ...
-    def guided(self, time_s: _Numbers, y_m: _Numbers, rate_per_s: float) -> Trial:
+    def guided(self, time_s: _Numbers, y_m: _Numbers, point_m: _Numbers, rate_per_s: float) -> Trial:
         """Return the trial drawn along y to the places `y_m`, m, where it was seen at `time_s`, s, at a rate, 1/s."""
     @property
     def stability_bound_s(self) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -12,12 +13,13 @@ from tumblers.diagnosis import search as searches
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.contender import Contender
 from tumblers.diagnosis.fitter import Fitter
-from tumblers.diagnosis.guided import found_again
+from tumblers.diagnosis.guided import _Cloud, _spread, found_again
 from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.own_noise import settled_at
 from tumblers.diagnosis.search import Search
-from tumblers.diagnosis.simulator import Simulator
+from tumblers.diagnosis.simulator import Job, Simulator
 from tumblers.effects.friction_coefficient import FrictionCoefficient
+from tumblers.effects.magnetization_misalignment import MagnetizationMisalignment
 from tumblers.effects.magnetization_strength import MagnetizationStrength
 from tumblers.effects.surface_roughness import SurfaceRoughness
 
@@ -37,18 +39,69 @@ def point_of(effect: SurfaceRoughness, hypothesis: Hypothesis) -> Any:
     return (np.array(effect.to_fit(effect.vector())) - hypothesis.neutral) / hypothesis.scale
 
 
-def test_a_wavelength_that_is_off_by_a_tenth_is_found_by_runs_that_are_drawn_to_the_tracks() -> None:
+def test_a_wavelength_that_is_off_by_a_tenth_is_found_by_runs_that_are_drawn_to_the_tracks(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     fitter, hypothesis = lab()
     off = replace(TRUTH, wavelength_m=1.1 * TRUTH.wavelength_m)
     stuck = settled_at(fitter, hypothesis, point_of(off, hypothesis), evaluations=8)
     right = settled_at(fitter, hypothesis, point_of(TRUTH, hypothesis), evaluations=8)
-    other, found = found_again(fitter, [stuck, stuck], [1], 0, quiet)
+    told: list[tuple[int, int]] = []
+    rates: list[float | None] = []
+    run = fitter.comparison.simulator.run
+
+    def spied(jobs: Sequence[Job]) -> Any:
+        rates.extend({None if job.nudge is None else job.nudge.rate_per_s for job in jobs})
+        return run(jobs)
+
+    monkeypatch.setattr(fitter.comparison.simulator, "run", spied)
+    # Of more than 32 bits.
+    other, found = found_again(fitter, [stuck, stuck], [1], 2**40, lambda _, done, total: told.append((done, total)))
     assert other is stuck
+    # Drawn faster, then slower, then not at all.
+    drawn = [rate for rate in rates if rate is not None]
+    assert drawn == sorted(drawn, reverse=True)
+    assert set(drawn) == {20.0, 5.0}
+    assert rates[-1] is None
+    assert told[0] == (0, 60)
+    assert (59, 60) in told
     (effect,) = found.effects
     assert isinstance(effect, SurfaceRoughness)
     assert effect.wavelength_m == pytest.approx(TRUTH.wavelength_m, rel=0.003)
     # From where it was stuck to within a twentieth of the way.
     assert found.total < right.total + 0.05 * (stuck.total - right.total)
+
+
+def test_a_cloud_at_the_end_of_a_range_stays_within_it() -> None:
+    """Its bounds are divided by its widths, and what is asked for multiplied: rounding may carry it beyond."""
+    fitter, hypothesis = lab()
+    low = np.where(hypothesis.low < 0.0, hypothesis.low, 0.0)
+    asked: list[Any] = []
+
+    class Corner(Fitter):
+        def residuals(self, _hypothesis: Any, points: Any, **_more: Any) -> Any:
+            asked.extend(points)
+            return [NOTHING for _ in points]
+
+        def cost(self, _residual: Any, point: Any, *_rest: Any) -> float:
+            return float(np.sum(point - low))
+
+    corner = Corner(fitter.comparison)
+    for share in (1.0, 0.3, 0.7, 1.0 / 3.0):
+        start = share * low
+        for _ in range(2):
+            cloud = _Cloud(corner, hypothesis, start, _spread(hypothesis, start), 0.0, 0)
+            for _ in range(30):
+                cloud.move()
+            start = cloud.best
+    assert all(np.all(point >= hypothesis.low) and np.all(point <= hypothesis.high) for point in asked)
+
+
+def test_no_width_of_a_cloud_is_nothing_where_an_angle_is() -> None:
+    dataset = measure(plan(PLANS[:1]), ())
+    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
+    (hypothesis,) = Search(fitter, [MagnetizationMisalignment], quiet, 0).possible
+    assert np.all(_spread(hypothesis, np.array([0.0, 0.2])) > 1e-3)
 
 
 def test_what_has_one_parameter_alone_has_no_cloud() -> None:

@@ -6,9 +6,14 @@ import numpy as np
 import pytest
 
 from tumblers import _core
+from tumblers.camera import Camera
 from tumblers.diagnosis import simulator as simulators
+from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.guide import Nudge
 from tumblers.diagnosis.simulator import Job, Simulator
+from tumblers.effects.base import Effect
 from tumblers.effects.camera_calibration import CameraCalibration
+from tumblers.effects.center_of_mass_offset import CenterOfMassOffset
 from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.effects.magnetization_strength import MagnetizationStrength
 from tumblers.effects.substrate_tilt import SubstrateTilt
@@ -17,6 +22,8 @@ from tumblers.model import Model
 from tumblers.presets import drive
 
 from .lab import PLANS, measure, plan, rollouts_made
+
+FAST = Nudge(50.0, Camera())
 
 
 def jobs(first: int, count: int) -> list[Job]:
@@ -114,7 +121,7 @@ def test_a_scheme_that_is_unstable_in_long_steps_is_run_in_shorter_ones(strength
 def test_a_run_that_is_drawn_to_its_track_stays_near_it_and_is_kept_for_itself() -> None:
     dataset = measure(plan(PLANS[:2], duration_s=1.0), (SubstrateTilt(slope_y_deg=10.0),))
     simulator = Simulator(dataset, 1)
-    free, drawn, other = simulator.run([Job(0), Job(0, rate_per_s=50.0), Job(1, rate_per_s=50.0)])
+    free, drawn, other = simulator.run([Job(0), Job(0, nudge=FAST), Job(1, nudge=FAST)])
     off = []
     for i, path in ((0, free), (0, drawn), (1, other)):
         track = dataset.trials[i].track
@@ -132,7 +139,41 @@ def test_a_run_that_is_drawn_to_its_track_stays_near_it_and_is_kept_for_itself()
 
 def test_without_a_track_a_run_is_on_its_own() -> None:
     simulator = Simulator(plan(), 1)
-    free, drawn = simulator.run([Job(0), Job(0, rate_per_s=50.0)])
+    free, drawn = simulator.run([Job(0), Job(0, nudge=FAST)])
     assert free is not None
     assert drawn is not None
     np.testing.assert_array_equal(free.position_m, drawn.position_m)
+
+
+@pytest.mark.parametrize(
+    "effects",
+    [
+        (),
+        (CenterOfMassOffset(offset_m=(0.0, 4e-5, 2e-5)),),
+        (CameraCalibration(scale=1.05),),
+        (CameraCalibration(heading_deg=8.0),),
+        (CameraCalibration(origin_m=(3e-4, -4e-4)),),
+        (CameraCalibration(time_offset_s=0.08),),
+    ],
+)
+@pytest.mark.parametrize("lost", [slice(0, 0), slice(0, 20), slice(25, 45), slice(50, None)])
+def test_a_model_that_is_right_is_drawn_nowhere(effects: tuple[Effect, ...], lost: slice) -> None:
+    """By the noise alone: no sensor, no offset of what is tracked and no lost frame draws it away from where it was."""
+    dataset = measure(plan(PLANS[1:2], duration_s=1.2), effects)
+    (trial,) = dataset.trials
+    assert trial.track is not None
+    for values in trial.track.channels.values():
+        values.setflags(write=True)
+        values[lost] = np.nan
+    comparison = Comparison(dataset, Simulator(dataset, 1))
+    (alone,) = comparison.simulator.run([Job(0, effects)])
+    as_fitted = comparison.residual([alone])
+    for rate in (5.0, 50.0):
+        nudge = Nudge.of(rate, as_fitted.local[0], as_fitted.camera)
+        (drawn,) = comparison.simulator.run([Job(0, effects, nudge=nudge)])
+        assert alone is not None
+        assert drawn is not None
+        shift = drawn.position_m - alone.position_m
+        assert np.abs(shift).max() > 0.0
+        # Less than what the sensor's tolerances leave open, and a fiftieth of what a body of 0.8 mm goes in a turn.
+        assert np.abs(shift[:, 1]).max() < 4e-5

@@ -136,7 +136,7 @@ impl<'a> Stepper<'a> {
         self.state.orientation = advance(&self.state.orientation, &self.solution.angular, h);
         self.done += 1;
         if let Some(guide) = self.trial.guide() {
-            self.state.position.y += guide.shift(self.state.position.y, self.time(), h);
+            self.state.position.y += guide.shift(&self.state, self.time(), h);
         }
         self.warm.support = self.solution.support;
         self.warm.unknowns.angular = self.solution.angular;

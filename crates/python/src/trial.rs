@@ -119,9 +119,9 @@ impl PyTrial {
         Trial::new(parts).map(Self).map_err(refused)
     }
 
-    #[pyo3(signature = (time_s, y_m, rate_per_s))]
-    fn guided(&self, time_s: Vec<f64>, y_m: Vec<f64>, rate_per_s: f64) -> PyResult<Self> {
-        let guide = Guide::new(&time_s, &y_m, rate_per_s).map_err(refused)?;
+    #[pyo3(signature = (time_s, y_m, point_m, rate_per_s))]
+    fn guided(&self, time_s: Vec<f64>, y_m: Vec<f64>, point_m: [f64; 3], rate_per_s: f64) -> PyResult<Self> {
+        let guide = Guide::new(&time_s, &y_m, Vec3::from(point_m), rate_per_s).map_err(refused)?;
         Ok(Self(self.0.clone().guided(guide)))
     }
 

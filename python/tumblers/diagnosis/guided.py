@@ -7,15 +7,16 @@ objective has a minimum of its own. A run that is drawn to its track,
 y ← y + (1 - e^(-γh)) (ŷ(t) - y)
 ```
 
-loses no phase (Abarbanel and others 2009, SIAM J. Appl. Dyn. Syst. 8, 1341); as γ falls, the objective comes back to
-the one that is asked for. Motion that hops leaves it rough, so that least squares stop at every hop: it is searched
-by clouds of points whose covariance adapts (CMA-ES; Hansen and Ostermeier 2001, Evol. Comput. 9, 159), in the longer
-steps as long as runs are drawn.
+loses none where it is seen (Abarbanel and others 2009, SIAM J. Appl. Dyn. Syst. 8, 1341); as γ falls, the objective
+comes back to the one that is asked for. ŷ is what the sensor saw as it was fitted to the run on its own (`Guide`).
+Motion that hops leaves the objective rough, so that least squares stop at every hop: it is searched by clouds of points
+whose covariance adapts (CMA-ES; Hansen and Ostermeier 2001, Evol. Comput. 9, 159), in the longer steps as long as runs
+are drawn.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 
 import numpy as np
@@ -23,10 +24,11 @@ from cmaes import CMA
 from numpy.typing import NDArray
 
 from ..progress import OnPhase
-from .contender import Contender, likeliest
+from .contender import Contender, likeliest, of_fit
 from .fitter import Fitter
+from .guide import Nudge
 from .hypothesis import Hypothesis
-from .own_noise import settled, settled_at
+from .own_noise import against_itself, settled
 
 __all__ = ["found_again"]
 
@@ -38,6 +40,8 @@ Floats = NDArray[np.float64]
 # clouds of runs on their own with none; in a small lab both lead to it.
 _RATES = ((20.0, 30, 1.0), (5.0, 15, 0.6), (0.0, 15, 0.4))
 _CLOUD, _SPREAD = 16, 0.05
+# What such a value counts at least, in its range.
+_LEAST_VALUE = 0.02
 # Trial points of the fit from where the last cloud ends.
 _LAST_POINTS = 12
 
@@ -60,56 +64,91 @@ def found_again(
     tell
         Is told the phase, how much of it is done, and of how much.
     """
-    made = list(contenders)
-    for n, k in enumerate(which):
-        tell("runs drawn to the tracks", n, len(which))
-        made[k] = _found_again(fitter, contenders[k], seed, tell)
+    made, told = list(contenders), 0
+
+    def on_cloud() -> None:
+        nonlocal told
+        tell("runs drawn to the tracks", told, len(which) * sum(clouds for _, clouds, _ in _RATES))
+        told += 1
+
+    for k in which:
+        other = _by_clouds(fitter, contenders[k], seed, on_cloud)
+        if other is not None:
+            held = contenders[k].fit
+            assert held is not None
+            own = contenders[k] if contenders[k].settled else against_itself(fitter, held)
+            made[k] = likeliest([own, *settled(fitter, [other], tell)])
     return made
 
 
-def _found_again(fitter: Fitter, contender: Contender, seed: int, tell: OnPhase) -> Contender:
+def _by_clouds(fitter: Fitter, contender: Contender, seed: int, on_cloud: Callable[[], None]) -> Contender | None:
+    """Return a contender where the clouds around it lead; None where it has one parameter: there a fit finds its way.
+
+    It is against the noise around where the last cloud ended.
+    """
     assert contender.fit is not None
-    # A cloud has two dimensions at least; along a line a fit finds its way.
     if contender.free < 2:
-        return contender
+        return None
     hypothesis, point = contender.fit.hypothesis, contender.point
     spread = _spread(hypothesis, point)
-    for rate, clouds, width in _RATES:
+    seen = any(guide is not None for guide in fitter.comparison.simulator.guides)
+    for rate, clouds, width in _RATES if seen else _RATES[-1:]:
         with fitter.comparison.in_longer_steps() if rate > 0.0 else nullcontext():
             fitter.take_likeliest_noise(hypothesis.effects(point))
-            point = _least_by_clouds(fitter, hypothesis, point, width * spread, rate, clouds, seed)
-    (other,) = settled(fitter, [settled_at(fitter, hypothesis, point, _LAST_POINTS)], tell)
-    return likeliest([contender, other])
+            cloud = _Cloud(fitter, hypothesis, point, width * spread, rate, seed)
+            for _ in range(clouds):
+                on_cloud()
+                cloud.move()
+        point = cloud.best
+    fitter.take_likeliest_noise(hypothesis.effects(point))
+    return of_fit(fitter, fitter.fit(hypothesis, point, evaluations=_LAST_POINTS))
 
 
 def _spread(hypothesis: Hypothesis, point: Floats) -> Floats:
     """Return how wide a cloud around a point is along each coordinate, shape (p,)."""
-    always = np.array([p.always for kind in hypothesis.kinds for p in kind.parameters])
-    value = np.abs(hypothesis.neutral / hypothesis.scale + point)
-    return _SPREAD * np.where(always & (value > 0.0), value, 1.0)
+    always = np.array([p.always and p.neutral != 0.0 for kind in hypothesis.kinds for p in kind.parameters])
+    value = np.maximum(np.abs(hypothesis.neutral / hypothesis.scale + point), _LEAST_VALUE)
+    return _SPREAD * np.where(always, value, 1.0)
 
 
-def _least_by_clouds(
-    fitter: Fitter, hypothesis: Hypothesis, start: Floats, spread: Floats, rate: float, clouds: int, seed: int
-) -> Floats:
-    """Return the best point of some clouds, the first around a start, or the start, against the noise of the moment."""
-    free = hypothesis.high > hypothesis.low
-    bounds = np.column_stack([hypothesis.low, hypothesis.high])[free] / spread[free, None]
-    cloud = CMA(mean=start[free] / spread[free], sigma=1.0, bounds=bounds, seed=seed, population_size=_CLOUD)
-    best, least = start, _costs(fitter, hypothesis, [start], rate)[0]
-    for _ in range(clouds):
-        asked = [cloud.ask() for _ in range(_CLOUD)]
-        points = [start.copy() for _ in asked]
+class _Cloud:
+    """Points around the best so far, against the noise of the moment, of runs that are drawn at a rate."""
+
+    def __init__(
+        self, fitter: Fitter, hypothesis: Hypothesis, start: Floats, spread: Floats, rate: float, seed: int
+    ) -> None:
+        self._fitter, self._hypothesis = fitter, hypothesis
+        self._free = hypothesis.high > hypothesis.low
+        self._spread = spread[self._free]
+        self._nudges: list[Nudge] | None = None
+        if rate > 0.0:
+            (alone,) = fitter.residuals(hypothesis, [start])
+            self._nudges = [Nudge.of(rate, local, alone.camera) for local in alone.local]
+        self.best, self._least = start, self._costs([start])[0]
+        bounds = np.column_stack([hypothesis.low, hypothesis.high])[self._free] / self._spread[:, None]
+        self._moving = CMA(
+            # Divided, a start at an end of its range may be beyond it by rounding.
+            mean=np.clip(start[self._free] / self._spread, *bounds.T),
+            sigma=1.0,
+            bounds=bounds,
+            # It takes 32 bits.
+            seed=int(np.random.SeedSequence(seed).generate_state(1)[0]),
+            population_size=_CLOUD,
+        )
+
+    def move(self) -> None:
+        """Look at the points of one cloud, and let the next one be where they are best."""
+        asked = [self._moving.ask() for _ in range(_CLOUD)]
+        points = [self.best.copy() for _ in asked]
         for point, values in zip(points, asked, strict=True):
-            point[free] = values * spread[free]
-        costs = _costs(fitter, hypothesis, points, rate)
-        cloud.tell(list(zip(asked, costs, strict=True)))
+            point[self._free] = values * self._spread
+            np.clip(point, self._hypothesis.low, self._hypothesis.high, out=point)
+        costs = self._costs(points)
+        self._moving.tell(list(zip(asked, costs, strict=True)))
         k = int(np.argmin(costs))
-        if costs[k] < least:
-            best, least = points[k], costs[k]
-    return best
+        if costs[k] < self._least:
+            self.best, self._least = points[k], costs[k]
 
-
-def _costs(fitter: Fitter, hypothesis: Hypothesis, points: Sequence[Floats], rate: float) -> list[float]:
-    found = fitter.residuals(hypothesis, points, rate_per_s=rate)
-    return [fitter.cost(residual, point) for residual, point in zip(found, points, strict=True)]
+    def _costs(self, points: Sequence[Floats]) -> list[float]:
+        found = self._fitter.residuals(self._hypothesis, points, nudges=self._nudges)
+        return [self._fitter.cost(residual, point) for residual, point in zip(found, points, strict=True)]

@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 from ..effects.base import Effect
 from .comparison import Comparison, Residual
 from .fit import Fit
+from .guide import Nudge
 from .hypothesis import PRIOR_SIGMA, Hypothesis
 from .loss import FAR, robust_cost
 from .pose import Path
@@ -59,7 +60,7 @@ class Objective:
         points: Sequence[Floats],
         train: Sequence[int] | None = None,
         share: float = 1.0,
-        rate_per_s: float = 0.0,
+        nudges: Sequence[Nudge] | None = None,
     ) -> list[Residual]:
         """Return how wrong a hypothesis is at each of some points: one native batch.
 
@@ -71,14 +72,14 @@ class Objective:
             Trials that are simulated and from which the camera is fitted; all if None. The others count as not run.
         share
             Of each trial's time that counts.
-        rate_per_s
-            How fast the runs are drawn to where the robot was seen, 1/s.
+        nudges
+            By trial, how the runs are drawn to where the robot was seen; they are on their own if None.
         """
         chosen = self.trials if train is None else tuple(train)
         jobs = []
         for point in points:
             effects = hypothesis.effects(point)
-            jobs += [Job(i, effects, share=share, rate_per_s=rate_per_s) for i in chosen]
+            jobs += [Job(i, effects, share=share, nudge=None if nudges is None else nudges[i]) for i in chosen]
         paths = self.comparison.simulator.run(jobs)
         runs = []
         for k in range(len(points)):

@@ -14,13 +14,14 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..camera import Camera
-from ..dataset import Dataset, LabTrial
+from ..dataset import Dataset
 from ..effects.base import Effect
 from ..errors import InputError, TumblersError
 from ..field import RotatingField, TableField
 from ..model import RELEASED_TORQUE, Model
 from ..progress import native_call
 from ..scenario import Scenario
+from .guide import Guide, Nudge
 from .pose import Path
 
 __all__ = ["LONGEST_STEP_S", "SHORTEST_STEP_S", "Edit", "Job", "Simulator", "longest_step_s"]
@@ -62,8 +63,8 @@ class Job:
         A change of the scenario beside the effects.
     share
         How much of the trial's time is simulated, up to 1.
-    rate_per_s
-        How fast the run is drawn along y to where the robot was seen, 1/s. At 0, or without a track, it is on its own.
+    nudge
+        How the run is drawn along y to where the robot was seen; if None, or without a track, it is on its own.
     """
 
     trial: int
@@ -71,15 +72,22 @@ class Job:
     divisor: int = 1
     edit: Edit | None = None
     share: float = 1.0
-    rate_per_s: float = 0.0
+    nudge: Nudge | None = None
+
+
+class _Drawn(NamedTuple):
+    """To the track of which trial, seen through which cameras, a run is drawn, and how fast, 1/s."""
+
+    trial: int
+    cameras: tuple[Camera, ...]
+    rate_per_s: float
 
 
 class _Run(NamedTuple):
-    """What moves: a scenario under a perfect camera, the trial to whose track it is drawn, and how fast, 1/s."""
+    """What moves: a scenario under a perfect camera, on its own or drawn to a track."""
 
     scenario: Scenario
-    towards: int | None
-    rate_per_s: float
+    drawn: _Drawn | None
 
 
 class Simulator:
@@ -91,6 +99,11 @@ class Simulator:
         What the lab believes, and its trials.
     threads
         Threads of a batch, all if 0. The results do not depend on it.
+
+    Attributes
+    ----------
+    guides
+        By trial, to what its runs may be drawn.
     """
 
     def __init__(self, dataset: Dataset, threads: int = 0) -> None:
@@ -102,7 +115,7 @@ class Simulator:
         self._check()
         self.step_s = self._longest_s()
         self._nominal: dict[tuple[int, float], Scenario] = {}
-        self._guides = [_guide(trial) for trial in dataset.trials]
+        self.guides = [Guide.of(trial) for trial in dataset.trials]
         self._known: OrderedDict[_Run, Path | None] = OrderedDict()
         self._kept = 0
 
@@ -280,12 +293,24 @@ class Simulator:
         return paths
 
     def _run_of(self, scenario: Scenario, job: Job) -> _Run:
-        guided = job.rate_per_s > 0.0 and self._guides[job.trial] is not None
-        return _Run(_unseen(scenario), job.trial if guided else None, job.rate_per_s if guided else 0.0)
+        drawn = None
+        if job.nudge is not None and self.guides[job.trial] is not None:
+            drawn = _Drawn(job.trial, (scenario.camera, job.nudge.sensor), job.nudge.rate_per_s)
+        return _Run(_unseen(scenario), drawn)
 
     def _native(self, run: _Run) -> _core.Trial:
-        trial, guide = run.scenario.trial(), None if run.towards is None else self._guides[run.towards]
-        return trial if guide is None else trial.guided(*guide, run.rate_per_s)
+        trial, drawn = run.scenario.trial(), run.drawn
+        guide = None if drawn is None else self.guides[drawn.trial]
+        places = None if drawn is None or guide is None else guide.behind(drawn.cameras)
+        if drawn is None or places is None:
+            return trial
+        return trial.guided(*places, self._tracked(run.scenario), drawn.rate_per_s)
+
+    def _tracked(self, scenario: Scenario) -> Floats:
+        """Return the body-fixed place of the tracked point, from the centre of mass, m, shape (3,)."""
+        if self.dataset.sensor.tracked_point != "body_centre":
+            return np.zeros(3)
+        return 0.0 - np.array(scenario.robot.center_of_mass_m)
 
     def _possible(self, job: Job) -> Scenario | None:
         with suppress(InputError):
@@ -306,24 +331,15 @@ class Simulator:
         same = np.einsum("ij,ij->i", orientation[1:], orientation[:-1]) >= 0.0
         sign = np.concatenate([[1.0], np.cumprod(np.where(same, 1.0, -1.0))])
         orientation = orientation * sign[:, None]
-        offset = scenario.robot.center_of_mass_m
-        if self.dataset.sensor.tracked_point == "body_centre" and any(offset):
-            position = position - _turned(orientation, np.array(offset))
+        tracked = self._tracked(scenario)
+        if tracked.any():
+            position = position + _turned(orientation, tracked)
         return Path(
             interval_s=every * scenario.run.fixed_step_s,
             position_m=position,
             orientation=orientation,
             contact_mode=rollout["contact_mode"][:rows],
         )
-
-
-def _guide(trial: LabTrial) -> tuple[Floats, Floats] | None:
-    """Return when a robot was seen, s, and where along y, m; None where it never was."""
-    if trial.track is None or "y_m" not in trial.track.channels:
-        return None
-    place = trial.track.channels["y_m"]
-    seen = np.isfinite(place)
-    return (trial.track.time_s[seen], place[seen]) if seen.any() else None
 
 
 def _unseen(scenario: Scenario) -> Scenario:
