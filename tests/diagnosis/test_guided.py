@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tumblers.diagnosis import guided
 from tumblers.diagnosis import search as searches
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.contender import Contender
 from tumblers.diagnosis.fitter import Fitter
-from tumblers.diagnosis.guided import _Cloud, _spread, found_again
+from tumblers.diagnosis.guided import _Cloud, _spread, _with_its, found_again
 from tumblers.diagnosis.hypothesis import Hypothesis
 from tumblers.diagnosis.own_noise import settled_at
 from tumblers.diagnosis.search import Search
@@ -70,6 +71,34 @@ def test_a_wavelength_that_is_off_by_a_tenth_is_found_by_runs_that_are_drawn_to_
     assert effect.wavelength_m == pytest.approx(TRUTH.wavelength_m, rel=0.003)
     # From where it was stuck to within a twentieth of the way.
     assert found.total < right.total + 0.05 * (stuck.total - right.total)
+
+
+def test_what_one_has_found_of_a_relief_is_right_for_another_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whichever of two was searched with luck, and first or last."""
+    fitter, relief = lab()
+    (strength,) = Search(fitter, [MagnetizationStrength], quiet, 0).possible
+    off = replace(TRUTH, wavelength_m=1.1 * TRUTH.wavelength_m)
+    stuck, right = (point_of(effect, relief) for effect in (off, TRUTH))
+    alone = settled_at(fitter, relief, stuck, evaluations=2)
+    pair = settled_at(fitter, strength + relief, np.concatenate([[0.0], stuck]), evaluations=2)
+    lucky = settled_at(fitter, relief, right, evaluations=2)
+    stuck_fitted = min(alone, pair, key=lambda contender: contender.total).point[-len(right) :]
+    starts: list[Any] = []
+
+    def by_clouds(_fitter: Any, contender: Contender, best: Contender, *_rest: Any) -> Contender:
+        starts.append(_with_its(contender, best))
+        return lucky if len(contender.names) == 1 else pair
+
+    monkeypatch.setattr(guided, "_by_clouds", by_clouds)
+    for order in ([0, 1], [1, 0]):
+        starts.clear()
+        made = found_again(fitter, [alone, pair], order, 0, quiet)
+        assert made[0].total <= lucky.total
+        # As likely but for the second effect, which does nothing.
+        assert made[1].total == pytest.approx(lucky.total, abs=0.05 * (pair.total - lucky.total))
+        # What is searched later starts with what was found before.
+        expected = lucky.point if order[0] == 0 else stuck_fitted
+        np.testing.assert_array_equal(starts[order.index(1)][1:], expected)
 
 
 def test_a_cloud_at_the_end_of_a_range_stays_within_it() -> None:

@@ -71,27 +71,58 @@ def found_again(
         tell("runs drawn to the tracks", told, len(which) * sum(clouds for _, clouds, _ in _RATES))
         told += 1
 
+    def keep(k: int, other: Contender) -> None:
+        fit = made[k].fit
+        assert fit is not None
+        own = made[k] if made[k].settled else against_itself(fitter, fit)
+        made[k] = likeliest([own, *settled(fitter, [other], tell)])
+
+    def best() -> Contender:
+        return likeliest(made[k] for k in which)
+
     for k in which:
-        other = _by_clouds(fitter, contenders[k], seed, on_cloud)
-        if other is not None:
-            held = contenders[k].fit
-            assert held is not None
-            own = contenders[k] if contenders[k].settled else against_itself(fitter, held)
-            made[k] = likeliest([own, *settled(fitter, [other], tell)])
+        # A cloud has two dimensions at least; along a line a fit finds its way.
+        if made[k].free >= 2:
+            keep(k, _by_clouds(fitter, made[k], best(), seed, on_cloud))
+    # What one has found of an effect may be right for another that was searched before.
+    leader = best()
+    for k in which:
+        point = _with_its(made[k], leader)
+        if not np.array_equal(point, made[k].point):
+            keep(k, _fitted(fitter, made[k], point))
     return made
 
 
-def _by_clouds(fitter: Fitter, contender: Contender, seed: int, on_cloud: Callable[[], None]) -> Contender | None:
-    """Return a contender where the clouds around it lead; None where it has one parameter: there a fit finds its way.
+def _with_its(contender: Contender, other: Contender) -> Floats:
+    """Return a contender's point, where the other has an effect of it too with the other's parameters, shape (p,)."""
+    assert contender.fit is not None
+    assert other.fit is not None
+    theirs, first = {}, 0
+    for kind in other.fit.hypothesis.kinds:
+        theirs[kind.name] = other.point[first : first + len(kind.parameters)]
+        first += len(kind.parameters)
+    own, first = contender.point.copy(), 0
+    for kind in contender.fit.hypothesis.kinds:
+        here = slice(first, first + len(kind.parameters))
+        own[here] = theirs.get(kind.name, own[here])
+        first = here.stop
+    return np.clip(own, contender.fit.hypothesis.low, contender.fit.hypothesis.high)
+
+
+def _by_clouds(
+    fitter: Fitter, contender: Contender, best: Contender, seed: int, on_cloud: Callable[[], None]
+) -> Contender:
+    """Return a contender where the clouds around it lead, or around it with what the best has of the same effects.
 
     It is against the noise around where the last cloud ended.
     """
     assert contender.fit is not None
-    if contender.free < 2:
-        return None
-    hypothesis, point = contender.fit.hypothesis, contender.point
-    spread = _spread(hypothesis, point)
+    hypothesis = contender.fit.hypothesis
     seen = any(guide is not None for guide in fitter.comparison.simulator.guides)
+    starts = [contender.point, _with_its(contender, best)]
+    with fitter.comparison.in_longer_steps():
+        point = starts[int(np.argmin([_total(fitter, hypothesis, start) for start in starts]))]
+    spread = _spread(hypothesis, point)
     for rate, clouds, width in _RATES if seen else _RATES[-1:]:
         with fitter.comparison.in_longer_steps() if rate > 0.0 else nullcontext():
             fitter.take_likeliest_noise(hypothesis.effects(point))
@@ -100,8 +131,22 @@ def _by_clouds(fitter: Fitter, contender: Contender, seed: int, on_cloud: Callab
                 on_cloud()
                 cloud.move()
         point = cloud.best
+    return _fitted(fitter, contender, point)
+
+
+def _fitted(fitter: Fitter, contender: Contender, point: Floats) -> Contender:
+    """Return a contender fitted from another point, against the noise there."""
+    assert contender.fit is not None
+    hypothesis = contender.fit.hypothesis
     fitter.take_likeliest_noise(hypothesis.effects(point))
     return of_fit(fitter, fitter.fit(hypothesis, point, evaluations=_LAST_POINTS))
+
+
+def _total(fitter: Fitter, hypothesis: Hypothesis, point: Floats) -> float:
+    """Return the objective at a point against the noise there, with that noise's determinant."""
+    fitter.take_likeliest_noise(hypothesis.effects(point))
+    (residual,) = fitter.residuals(hypothesis, [point])
+    return fitter.cost(residual, point) + fitter.comparison.log_determinant
 
 
 def _spread(hypothesis: Hypothesis, point: Floats) -> Floats:
