@@ -21,6 +21,8 @@ Floats = NDArray[np.float64]
 
 # Shares of a clock's tolerance that are tried first, and what a frame counts at most then, in sigmas.
 CLOCKS, OUTLIER = (-0.9, -0.6, -0.3, 0.0, 0.3, 0.6, 0.9), 6.0
+# The farthest that they are apart, s, and how many times as many there are at most.
+FARTHEST_APART, MOST_SETS = 5e-3, 9
 ITERATIONS = 3
 
 
@@ -77,24 +79,32 @@ class PlainFit:
         return np.concatenate([*parts, self._outcomes(trial, shared[:2])]) - floor.tolerance @ shared[2:]
 
     def _clock(self, trial: int) -> float:
-        reader, floor, path = self.stretches[trial].reader, self.stretches[trial].floor, self.paths[trial]
-        nuisances = self.comparison.nuisances
-        bound, sigmas = nuisances.local_bounds[trial, 0], nuisances.local_sigmas[trial]
-        if path is None or bound == 0.0 or not len(reader.observed.time_s):
+        bound = self.comparison.nuisances.local_bounds[trial, 0]
+        if self.paths[trial] is None or bound == 0.0 or not len(self.stretches[trial].reader.observed.time_s):
             return 0.0
-        losses = []
-        for clock in bound * np.array(CLOCKS):
-            loss = (clock / sigmas[0]) ** 2
-            wrong = reader.differences(path, np.array([clock, 0.0, 0.0]), np.zeros(2))
-            for name, kept in floor.valid.items():
-                values = floor.whiten[name] @ wrong[name][kept]
-                if name in ("x", "y"):
-                    # What a shift of the origin cannot explain.
-                    shift = floor.whiten[name].sum(axis=1)
-                    values = values - shift * (shift @ values) / (shift @ shift + sigmas[1] ** -2)
-                loss += float(np.sum(np.minimum(values**2, OUTLIER**2)))
-            losses.append(loss)
-        return float(bound * CLOCKS[int(np.argmin(losses))])
+        sets = int(np.clip(np.ceil(0.3 * bound / FARTHEST_APART), 1, MOST_SETS)) | 1
+        aside = 0.3 * (np.arange(sets) - 0.5 * (sets - 1)) / sets
+        clocks = bound * np.add.outer(aside, CLOCKS).ravel()
+        best = clocks[np.argmin([self._clock_loss(trial, clock) for clock in clocks])]
+        if sets > 1:
+            near = np.clip(best + 0.3 * bound / sets * np.array(CLOCKS), -bound, bound)
+            best = near[np.argmin([self._clock_loss(trial, clock) for clock in near])]
+        return float(best)
+
+    def _clock_loss(self, trial: int, clock: float) -> float:
+        reader, floor, path = self.stretches[trial].reader, self.stretches[trial].floor, self.paths[trial]
+        assert path is not None
+        sigmas = self.comparison.nuisances.local_sigmas[trial]
+        loss = (clock / sigmas[0]) ** 2
+        wrong = reader.differences(path, np.array([clock, 0.0, 0.0]), np.zeros(2))
+        for name, kept in floor.valid.items():
+            values = floor.whiten[name] @ wrong[name][kept]
+            if name in ("x", "y"):
+                # What a shift of the origin cannot explain.
+                shift = floor.whiten[name].sum(axis=1)
+                values = values - shift * (shift @ values) / (shift @ shift + sigmas[1] ** -2)
+            loss += float(np.sum(np.minimum(values**2, OUTLIER**2)))
+        return loss
 
     def _rows(self, trial: int, local: Floats, shared: Floats, held: bool) -> Floats:
         """Return the derivatives by the trial's nuisances, by what all share, and the differences, shape (n, k)."""
