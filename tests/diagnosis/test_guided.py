@@ -130,7 +130,12 @@ def test_no_width_of_a_cloud_is_nothing_where_an_angle_is() -> None:
     dataset = measure(plan(PLANS[:1]), ())
     fitter = Fitter(Comparison(dataset, Simulator(dataset)))
     (hypothesis,) = Search(fitter, [MagnetizationMisalignment], quiet, 0).possible
-    assert np.all(_spread(hypothesis, np.array([0.0, 0.2])) > 1e-3)
+    for point in ([0.0, 0.0], [0.2, 0.0], [0.2, 1e-9]):
+        assert np.all(_spread(hypothesis, np.array(point)) >= 1e-3)
+    (relief,) = Search(fitter, [SurfaceRoughness], quiet, 0).possible
+    # As far from its neutral value as it is from nothing.
+    nothing = -relief.neutral / relief.scale
+    assert np.all(_spread(relief, nothing) >= 1e-3)
 
 
 def test_what_has_one_parameter_alone_has_no_cloud() -> None:

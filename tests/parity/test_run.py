@@ -93,25 +93,30 @@ def test_metrics(frequency_Hz: float) -> None:
     ("rate_per_s", "point_m"), [(5.0, (0.0, 0.0, 0.0)), (100.0, (0.0, 0.0, 0.0)), (100.0, (2e-5, 1.5e-4, -6e-5))]
 )
 def test_what_a_guide_makes_of_a_run(rate_per_s: float, point_m: tuple[float, float, float]) -> None:
-    """After each step the reference is moved by (1 - e^(-γh)) of the way to its guide, where that has a place."""
+    """At each frame the reference is moved by (1 - e^(-γ (t_k - t_(k-1)))) of the way to where the point was seen."""
     twin = Twin.of(preset_scenario("cuboid_on_paper", duration_s=0.1))
     trial = twin.reference
-    # Between steps, so that none is at a row beside the lost one.
-    times, places = 2e-4 + np.array([0.01, 0.03, 0.05, 0.07, 0.09]), np.array([0.0, -2e-4, np.nan, 6e-4, 5e-4])
+    # The third is at the end of a step.
+    times, places = np.array([0.0102, 0.0261, 0.04, 0.0707]), np.array([3e-4, -2e-4, 6e-4, 5e-4])
     (core,) = _core.rollouts([twin.core.guided(times, places, point_m, rate_per_s)], [1])
-    state, share = trial.resting_state(), -np.expm1(-rate_per_s * trial.step)
+    state, step = trial.resting_state(), trial.step
     force, centroid = trial.adhesion_at(state)
-    positions, drawn = [state.position], 0
-    for i in range(round(trial.duration / trial.step)):
-        end = reference.step(trial, state, i * trial.step, force, centroid).state
-        place = np.interp((i + 1) * trial.step, times, places, left=np.nan, right=np.nan)
-        seen = (end.position + end.rotation @ np.array(point_m))[1]
-        shift = 0.0 if np.isnan(place) else share * (place - seen)
-        drawn += shift != 0.0
+
+    def seen(state: reference.State) -> float:
+        return float((state.position + state.rotation @ np.array(point_m))[1])
+
+    positions, drawn = [state.position], []
+    for i in range(round(trial.duration / step)):
+        end, shift = reference.step(trial, state, i * step, force, centroid).state, 0.0
+        for k in range(1, len(times)):
+            if i * step < times[k] <= (i + 1) * step:
+                there = np.interp(times[k], [i * step, (i + 1) * step], [seen(state), seen(end)])
+                shift = -np.expm1(-rate_per_s * (times[k] - times[k - 1])) * (places[k] - there)
+                drawn.append(k)
         state = replace(end, position=end.position + np.array([0.0, shift, 0.0]))
         force, centroid = trial.adhesion_at(state)
         positions.append(state.position)
-    assert 0 < drawn < len(positions) - 1
+    assert drawn == [1, 2, 3]
     np.testing.assert_allclose(core["position_m"], positions, rtol=0.0, atol=POSE * trial.body.radius)
     (free,) = _core.rollouts([twin.core], [1])
     assert np.abs(core["position_m"] - free["position_m"]).max() > 1e-5

@@ -129,14 +129,15 @@ impl<'a> Stepper<'a> {
             }
         }
         let h = self.trial.step();
+        let before = self.trial.guide().map(|guide| (guide.seen(&self.state), self.time()));
         self.solution.converged &= self.is_resolved();
         self.state.linear = self.solution.linear;
         self.state.angular = self.solution.angular;
         self.state.position += self.solution.linear * h;
         self.state.orientation = advance(&self.state.orientation, &self.solution.angular, h);
         self.done += 1;
-        if let Some(guide) = self.trial.guide() {
-            self.state.position.y += guide.shift(&self.state, self.time(), h);
+        if let (Some(guide), Some((seen, start))) = (self.trial.guide(), before) {
+            self.state.position.y += guide.shift([seen, guide.seen(&self.state)], [start, self.time()]);
         }
         self.warm.support = self.solution.support;
         self.warm.unknowns.angular = self.solution.angular;

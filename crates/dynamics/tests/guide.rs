@@ -26,16 +26,18 @@ fn end_of(trial: &Trial) -> Stepper<'_> {
     stepper
 }
 
-/// `y(t) = ŷ + (y(0) - ŷ) e^(-γt)`, and nothing else moves.
+/// `y(t_k) = ŷ + (y(0) - ŷ) e^(-γ (t_k - t_0))`, and nothing else moves.
 #[test]
 fn what_rests_is_drawn_to_its_guide() {
     for (place, rate) in [(1e-3, 1.0), (-4e-4, 20.0), (2e-5, 100.0)] {
-        let guide = Guide::new(&[0.0, 1.0], &[place, place], Vec3::zeros(), rate).unwrap();
+        // Not at the ends of steps.
+        let times = [0.0, 0.0012, 0.0047, 0.0081];
+        let guide = Guide::new(&times, &[place; 4], Vec3::zeros(), rate).unwrap();
         let trial = Trial::new(in_the_air()).unwrap().guided(guide);
         let stepper = end_of(&trial);
-        let expected = -place * (-rate * stepper.time()).exp_m1();
+        let expected = -place * (-rate * 0.0081_f64).exp_m1();
         let position = stepper.state().position;
-        // Rounding, once a step.
+        // Rounding, once a frame.
         assert!((position.y - expected).abs() < 200.0 * f64::EPSILON * place.abs(), "{} {}", position.y, expected);
         assert_eq!((position.x, position.z), (0.0, 0.01));
         assert_eq!(stepper.state().linear, Vec3::zeros());
@@ -80,20 +82,20 @@ fn a_point_beside_the_centre_of_mass_is_drawn_along_its_own_way() {
 }
 
 #[test]
-fn between_its_rows_a_guide_is_linear_and_where_nothing_was_seen_there_is_none() {
-    let nan = f64::NAN;
-    let guide =
-        Guide::new(&[1.0, 2.0, 4.0, 5.0, 6.0, 7.0], &[0.0, 1.0, -1.0, nan, 3.0, 4.0], Vec3::zeros(), 1.0).unwrap();
-    for (t, place) in [(1.0, 0.0), (1.5, 0.5), (2.0, 1.0), (3.0, 0.0), (4.0, -1.0), (6.0, 3.0), (6.5, 3.5), (7.0, 4.0)]
-    {
-        assert_eq!(guide.at(t), Some(place), "{t}");
+fn a_body_is_drawn_at_each_frame_by_as_much_as_time_has_passed_since_the_last() {
+    let guide = Guide::new(&[1.0, 2.0, 4.0, 4.0 + 0.1 * STEP], &[7.0, 1.0, 5.0, -1.0], Vec3::zeros(), 0.5).unwrap();
+    let at = |t: f64| guide.shift([0.0, 0.0], [t - STEP, t]);
+    // Nothing at the first frame, between frames and after the last.
+    for t in [0.5, 1.0, 1.5, 3.9, 4.0 + 2.0 * STEP, 9.0] {
+        assert_eq!(at(t), 0.0, "{t}");
     }
-    for t in [0.0, 4.5, 5.0, 5.5, 7.5] {
-        assert_eq!(guide.at(t), None, "{t}");
-    }
-    let state = *Trial::new(in_the_air()).unwrap().initial();
-    assert!((guide.shift(&state, 2.0, STEP) - (1.0 - (-STEP).exp())).abs() < 1e-15);
-    assert_eq!(guide.shift(&state, 4.5, STEP), 0.0);
+    let near = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+    near(at(2.0), 1.0 - (-0.5_f64).exp());
+    near(at(4.0), 5.0 * (1.0 - (-1.0_f64).exp()));
+    // Of two in one step the last.
+    near(at(4.0 + 0.5 * STEP), (-0.05 * STEP).exp() - 1.0);
+    // A frame within a step: there the point had gone a quarter of its way, to where it was seen.
+    near(guide.shift([0.5, 2.5], [2.0 - 0.25 * STEP, 2.0 + 0.75 * STEP]), 0.0);
 }
 
 #[test]
@@ -104,7 +106,7 @@ fn a_guide_that_leads_nowhere_is_refused() {
     assert_eq!(refused(&[], &[], 1.0), Invalid::NoGuide);
     assert_eq!(refused(&[0.0], &[], 1.0), Invalid::Lengths { name: "y_m", found: 0, expected: 1 });
     assert_eq!(refused(&[0.0, 0.0], &[0.0, 0.0], 1.0), Invalid::GuideOrder { row: 2, found: 0.0, before: 0.0 });
-    assert!(matches!(refused(&[0.0], &[f64::INFINITY], 1.0), Invalid::NotFinite { name: "y_m", .. }));
+    assert!(matches!(refused(&[0.0], &[f64::NAN], 1.0), Invalid::NotFinite { name: "y_m", .. }));
     let beside = Guide::new(&[0.0], &[0.0], Vec3::new(0.0, f64::NAN, 0.0), 1.0);
     assert!(matches!(beside.unwrap_err(), Invalid::NotFinite { name: "point_m", .. }));
 }

@@ -1,7 +1,7 @@
 """`Guide`: where a robot was seen along y, to which a run is drawn, and `Nudge`, how.
 
 What was seen is taken back to the substrate frame and the field's clock first, through the sensor as a hypothesis has
-it and as its nuisances were fitted: a run that is right is drawn nowhere but by noise.
+it and as its nuisances were fitted: where x was seen too, a run that is right is drawn nowhere but by noise.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ __all__ = ["Guide", "Nudge"]
 
 Floats = NDArray[np.float64]
 
-# Frames farther apart than so many of their median interval have lost ones between them.
-_LOST = 1.5
-# A camera that shows less of a length along y than this share, with x not seen, says nothing of y.
-_LEAST_SEEN = 0.5
+# Places are at odds with both neighbours where they are off the middle of them by so many times as much as most are.
+_AT_ODDS = 12.0
+# A camera that shows less of a length along y than this share, with x not seen, says little of y.
+_LEAST_SEEN = 0.9
 
 
 class Nudge(NamedTuple):
@@ -68,7 +68,7 @@ class Guide:
     time_s
         By the sensor's clock, s, shape (n,).
     x_m, y_m
-        Of the tracked point, m, shape (n,), NaN in a row that stands for lost frames; no x where none was measured.
+        Of the tracked point, m, shape (n,); no x where none was measured.
     """
 
     time_s: Floats
@@ -77,7 +77,10 @@ class Guide:
 
     @classmethod
     def of(cls, trial: LabTrial) -> Guide | None:
-        """Return a trial's guide; None where no two neighbouring frames say where the robot was.
+        """Return a trial's guide; None where the robot was seen in less than two frames.
+
+        Frames that are at odds with both neighbours are left out: something else was taken for the robot. Where x is
+        lost and y is not, x is taken between its neighbours.
 
         Parameters
         ----------
@@ -87,27 +90,21 @@ class Guide:
         track = trial.track
         if track is None or "y_m" not in track.channels:
             return None
-        y, x = track.channels["y_m"], track.channels.get("x_m")
-        if x is not None and not np.isfinite(x).any():
-            x = None
-        seen = np.isfinite(y) if x is None else np.isfinite(y) & np.isfinite(x)
-        times = track.time_s[seen]
-        apart = np.diff(times) > _LOST * track.frame_interval_s
-        if len(times) < 2 or apart.all():
+        time, y, x = track.time_s, track.channels["y_m"], track.channels.get("x_m")
+        seen = np.flatnonzero(np.isfinite(y))
+        seen = seen[~_at_odds(y[seen])]
+        if len(seen) < 2:
             return None
-        after = np.flatnonzero(apart) + 1
-        between = 0.5 * (times[after - 1] + times[after])
-
-        def with_gaps(values: Floats) -> Floats:
-            return np.insert(values[seen], after, np.nan)
-
-        return cls(np.insert(times, after, between), None if x is None else with_gaps(x), with_gaps(y))
+        if x is not None:
+            known = np.isfinite(x)
+            x = np.interp(time[seen], time[known], x[known]) if known.any() else None
+        return cls(time[seen], x, y[seen])
 
     def behind(self, cameras: Sequence[Camera]) -> tuple[Floats, Floats] | None:
-        """Return the field's times, s, and the true places along y, m, shape (n,) each, NaN between lost frames.
+        """Return the field's times, s, and the true places along y, m, shape (n,) each.
 
-        None where cameras that are turned so far show nothing of y. Where x was not measured, the robot is taken to
-        have stayed at x = 0.
+        None where cameras that are turned by more than some 25° show too little of y without x. Where x was not
+        measured, the robot is taken to have stayed at x = 0: seen by a camera that is turned, a drift looks like y.
 
         Parameters
         ----------
@@ -122,6 +119,14 @@ class Guide:
         times = self.time_s + sum(camera.time_offset_s for camera in cameras)
         if self.x_m is not None:
             return times, np.linalg.solve(turned, np.stack([self.x_m - x, self.y_m - y]))[1]
-        if abs(turned[1, 1]) < _LEAST_SEEN * np.linalg.norm(turned[:, 1]):
+        if turned[1, 1] < _LEAST_SEEN * np.linalg.norm(turned[:, 1]):
             return None
         return times, (self.y_m - y) / turned[1, 1]
+
+
+def _at_odds(places: Floats) -> NDArray[np.bool_]:
+    """Return which places are far from the middle of both neighbours, shape (n,)."""
+    off = np.zeros(len(places))
+    off[1:-1] = np.abs(places[1:-1] - 0.5 * (places[:-2] + places[2:]))
+    usual = float(np.median(off[1:-1])) if len(places) > 2 else 0.0
+    return np.asarray((off > _AT_ODDS * usual) & (usual > 0.0))

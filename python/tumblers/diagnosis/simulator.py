@@ -64,7 +64,8 @@ class Job:
     share
         How much of the trial's time is simulated, up to 1.
     nudge
-        How the run is drawn along y to where the robot was seen; if None, or without a track, it is on its own.
+        How the run is drawn along y to where the robot was seen. If None, or where the trial has no `Guide`, or its
+        camera shows too little of y (`Guide.behind`), it is on its own.
     """
 
     trial: int
