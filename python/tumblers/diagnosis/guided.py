@@ -82,14 +82,17 @@ def found_again(
     def best() -> Contender:
         return likeliest(made[k] for k in which)
 
-    for k in clouded:
-        keep(k, _by_clouds(fitter, made[k], best(), rates, seed, on_cloud))
-    # What one has found of an effect may be right for another that was searched before.
-    leader = best()
-    for k in which:
-        point = _with_its(made[k], leader)
+    def share(k: int) -> None:
+        """Fit a contender from what the best has of the same effects: which one is searched with luck is chance."""
+        point = _with_its(made[k], best())
         if not np.array_equal(point, made[k].point):
             keep(k, _fitted(fitter, made[k], point))
+
+    for k in clouded:
+        share(k)
+        keep(k, _by_clouds(fitter, made[k], rates, seed, on_cloud))
+    for k in which:
+        share(k)
     return made
 
 
@@ -112,20 +115,16 @@ def _with_its(contender: Contender, other: Contender) -> Floats:
 def _by_clouds(
     fitter: Fitter,
     contender: Contender,
-    best: Contender,
     rates: Sequence[tuple[float, int, float]],
     seed: int,
     on_cloud: Callable[[], None],
 ) -> Contender:
-    """Return a contender where the clouds around it lead, or around it with what the best has of the same effects.
+    """Return a contender where the clouds around it lead.
 
     It is against the noise around where the last cloud ended.
     """
     assert contender.fit is not None
-    hypothesis = contender.fit.hypothesis
-    starts = [contender.point, _with_its(contender, best)]
-    with fitter.comparison.in_longer_steps():
-        point = starts[int(np.argmin([_total(fitter, hypothesis, start) for start in starts]))]
+    hypothesis, point = contender.fit.hypothesis, contender.point
     spread = _spread(hypothesis, point)
     for rate, clouds, width in rates:
         with fitter.comparison.in_longer_steps() if rate > 0.0 else nullcontext():
@@ -144,13 +143,6 @@ def _fitted(fitter: Fitter, contender: Contender, point: Floats) -> Contender:
     hypothesis = contender.fit.hypothesis
     fitter.take_likeliest_noise(hypothesis.effects(point))
     return of_fit(fitter, fitter.fit(hypothesis, point, evaluations=_LAST_POINTS))
-
-
-def _total(fitter: Fitter, hypothesis: Hypothesis, point: Floats) -> float:
-    """Return the objective at a point against the noise there, with that noise's determinant."""
-    fitter.take_likeliest_noise(hypothesis.effects(point))
-    (residual,) = fitter.residuals(hypothesis, [point])
-    return fitter.cost(residual, point) + fitter.comparison.log_determinant
 
 
 def _spread(hypothesis: Hypothesis, point: Floats) -> Floats:
