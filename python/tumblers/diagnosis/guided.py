@@ -100,16 +100,10 @@ def _with_its(contender: Contender, other: Contender) -> Floats:
     """Return a contender's point, where the other has an effect of it too with the other's parameters, shape (p,)."""
     assert contender.fit is not None
     assert other.fit is not None
-    theirs, first = {}, 0
-    for kind in other.fit.hypothesis.kinds:
-        theirs[kind.name] = other.point[first : first + len(kind.parameters)]
-        first += len(kind.parameters)
-    own, first = contender.point.copy(), 0
-    for kind in contender.fit.hypothesis.kinds:
-        here = slice(first, first + len(kind.parameters))
-        own[here] = theirs.get(kind.name, own[here])
-        first = here.stop
-    return np.clip(own, contender.fit.hypothesis.low, contender.fit.hypothesis.high)
+    theirs = dict(zip(other.fit.hypothesis.keys, other.point.tolist(), strict=True))
+    hypothesis = contender.fit.hypothesis
+    own = zip(hypothesis.keys, contender.point.tolist(), strict=True)
+    return np.clip([theirs.get(key, value) for key, value in own], hypothesis.low, hypothesis.high)
 
 
 def _by_clouds(
