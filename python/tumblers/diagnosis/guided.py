@@ -162,8 +162,7 @@ class _Cloud:
         self.best, self._least = start, self._costs([start])[0]
         bounds = np.column_stack([hypothesis.low, hypothesis.high])[self._free] / self._spread[:, None]
         self._moving = CMA(
-            # Divided, a start at an end of its range may be beyond it by rounding.
-            mean=np.clip(start[self._free] / self._spread, *bounds.T),
+            mean=start[self._free] / self._spread,
             sigma=1.0,
             bounds=bounds,
             # It takes 32 bits.
@@ -177,6 +176,7 @@ class _Cloud:
         points = [self.best.copy() for _ in asked]
         for point, values in zip(points, asked, strict=True):
             point[self._free] = values * self._spread
+            # Divided and multiplied again, an end of a range may be beyond it by rounding.
             np.clip(point, self._hypothesis.low, self._hypothesis.high, out=point)
         costs = self._costs(points)
         self._moving.tell(list(zip(asked, costs, strict=True)))

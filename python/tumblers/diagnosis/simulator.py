@@ -311,7 +311,7 @@ class Simulator:
         """Return the body-fixed place of the tracked point, from the centre of mass, m, shape (3,)."""
         if self.dataset.sensor.tracked_point != "body_centre":
             return np.zeros(3)
-        return 0.0 - np.array(scenario.robot.center_of_mass_m)
+        return -np.array(scenario.robot.center_of_mass_m)
 
     def _possible(self, job: Job) -> Scenario | None:
         with suppress(InputError):
