@@ -8,10 +8,11 @@ pub const CLOCK_STEP: f64 = 2e-4;
 /// Shares of a clock's tolerance that are tried first, and what a frame counts at most then, in sigmas.
 const CLOCKS: [f64; 7] = [-0.9, -0.6, -0.3, 0.0, 0.3, 0.6, 0.9];
 const OUTLIER: f64 = 6.0;
-/// How far apart those are, and may be, s: few frames a cycle are all far off a clock that is not near the right one. So
-/// many times as many are tried at most, and between the best and its neighbours then.
+/// How far apart those are, in shares.
 const APART: f64 = 0.3;
+/// How far apart they may be, s: of few frames a cycle all are far off by a clock that is not near the right one.
 const FARTHEST_APART: f64 = 5e-3;
+/// So many times as many are tried at most, and others between the best and its neighbours then.
 const MOST_SETS: usize = 9;
 
 /// One channel, in the frames in which it was not lost.
