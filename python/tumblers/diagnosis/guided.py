@@ -37,8 +37,8 @@ Floats = NDArray[np.float64]
 # The rates γ, 1/s, one after another, with how many clouds each and how wide the first is: of so many points, and in
 # shares of the ranges, or of its value for a parameter that has one wherever the effect acts. From where the search of
 # a dataset with a known relief had ended, nine of ten searches by runs that were drawn to straight lines between the
-# frames came near it, with two companions and several seeds; as many clouds of runs on their own did with none of three.
-# In a small lab both lead to it.
+# frames came near it, with two companions and several seeds; as many clouds of runs on their own did with none of
+# three. In a small lab both lead to it.
 _RATES = ((20.0, 30, 1.0), (5.0, 15, 0.6), (0.0, 15, 0.4))
 _CLOUD, _SPREAD = 16, 0.05
 # What such a value counts at least, in its range.
@@ -104,7 +104,8 @@ def _with_its(contender: Contender, other: Contender) -> Floats:
     theirs = dict(zip(other.fit.hypothesis.keys, other.point.tolist(), strict=True))
     hypothesis = contender.fit.hypothesis
     own = zip(hypothesis.keys, contender.point.tolist(), strict=True)
-    return np.clip([theirs.get(key, value) for key, value in own], hypothesis.low, hypothesis.high)
+    point = np.array([theirs.get(key, value) for key, value in own])
+    return np.clip(point, hypothesis.low, hypothesis.high)
 
 
 def _by_clouds(
