@@ -25,10 +25,11 @@ from tumblers import (
     Substrate,
     TableField,
 )
-from tumblers.camera import Camera
 from tumblers.effects.catalogue import CATALOGUE
 from tumblers.relief import Relief
 from tumblers.surroundings import Surroundings
+
+from .cameras import CAMERAS
 
 
 def lengths(low: float = 1e-5, high: float = 1e-3) -> st.SearchStrategy[float]:
@@ -178,13 +179,7 @@ SCENARIO = st.builds(
     ),
     relief=RELIEF,
     surroundings=SURROUNDINGS,
-    camera=st.builds(
-        Camera,
-        scale=st.floats(0.1, 2),
-        heading_deg=st.floats(-180, 180),
-        origin_m=st.tuples(st.floats(-1e-2, 1e-2), st.floats(-1e-2, 1e-2)),
-        time_offset_s=st.floats(-1, 1),
-    ),
+    camera=CAMERAS,
     effects=NEUTRAL_EFFECTS,
 )
 

@@ -159,6 +159,17 @@ def without(dataset: Dataset, trial: str, lost: slice) -> Dataset:
     return replace(dataset, trials=trials)
 
 
+def thinned(dataset: Dataset, every: int) -> Dataset:
+    """Return a dataset in which one of so many frames is kept of each track."""
+
+    def thin(track: Track) -> Track:
+        channels = {name: values[::every] for name, values in track.channels.items()}
+        return Track(time_s=track.time_s[::every], channels=channels)
+
+    trials = (trial if trial.track is None else replace(trial, track=thin(trial.track)) for trial in dataset.trials)
+    return replace(dataset, trials=tuple(trials))
+
+
 def coarse_lab(*truth: Effect) -> Fitter:
     """Return what was measured in a fine step, before a nominal model in a step that nothing asked to be shorter."""
     dataset = measure(plan(PLANS[:3]), truth, divisor=16)

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from tumblers.dataset import Track
 from tumblers.diagnosis import diagnose
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.floor import SHARED
@@ -18,7 +17,7 @@ from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects import get
 from tumblers.model import Model
 
-from .lab import PLANS, UPWARDS, measure, plan, without
+from .lab import PLANS, UPWARDS, measure, plan, thinned, without
 
 CONSIDERED = ("camera_calibration", "size_error", "substrate_tilt", "field_rolloff")
 
@@ -191,11 +190,8 @@ def test_a_track_that_leaves_frames_out_has_a_clock_as_good_as_the_camera_s(
     stated: dict[str, float], half_a_frame: float
 ) -> None:
     # Every sixth frame of 60 in a second.
-    data = measure(plan(PLANS[:1]))
-    track = data.trials[0].track
-    assert track is not None
-    sparse = Track(time_s=track.time_s[::6], channels={name: values[::6] for name, values in track.channels.items()})
-    data = replace(data, sensor=replace(data.sensor, **stated), trials=(replace(data.trials[0], track=sparse),))
+    data = thinned(measure(plan(PLANS[:1])), 6)
+    data = replace(data, sensor=replace(data.sensor, **stated))
     comparison = Comparison(data, Simulator(data, 1))
     assert comparison.nuisances.local_bounds[0, 0] == pytest.approx(half_a_frame, rel=1e-9)
 
@@ -205,13 +201,11 @@ def test_a_track_that_leaves_frames_out_has_a_clock_as_good_as_the_camera_s(
 def test_a_clock_is_found_in_a_few_frames_a_cycle(every: int, clock_frames: float) -> None:
     """Where all clocks but near the right one are far off, a right model would look wrong by 30 sigmas."""
     plans = PLANS[1:2] if every == 6 else PLANS[:1]
-    data = measure(plan(plans, duration_s=1.2), clock_frames=clock_frames, origin_m=4e-5, heading_deg=1.5, scale=1.004)
-    (trial,) = data.trials
-    assert trial.track is not None
-    channels = {name: values[::every] for name, values in trial.track.channels.items()}
-    track = Track(time_s=trial.track.time_s[::every], channels=channels)
-    comparison = Comparison(replace(data, trials=(replace(trial, track=track),)), Simulator(data, 1))
+    whole = measure(plan(plans, duration_s=1.2), clock_frames=clock_frames, origin_m=4e-5, heading_deg=1.5, scale=1.004)
+    data = thinned(whole, every)
+    comparison = Comparison(data, Simulator(data, 1))
     found = comparison.residual(comparison.nominal_paths)
     # Of 60 in a second. Half a frame of the sparse track is 25 or 50 times as far.
     assert found.local[0, 0] == pytest.approx(clock_frames / 60.0, abs=2e-3)
+    # Noise leaves 1, of the few numbers of six frames give or take a tenth.
     assert np.sqrt(np.mean(found.trials[0] ** 2)) < 1.3

@@ -12,8 +12,8 @@ import pytest
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
-from tests.diagnosis.lab import measure, plan, without
-from tumblers.dataset import Dataset, Outcome, Track
+from tests.diagnosis.lab import measure, plan, thinned, without
+from tumblers.dataset import Dataset, Outcome
 from tumblers.diagnosis import built_floors
 from tumblers.diagnosis.comparison import Comparison, Residual
 from tumblers.diagnosis.floor import SHARED
@@ -56,14 +56,7 @@ def rigid() -> Dataset:
 
 def sparse() -> Dataset:
     """Return trials in which every sixth frame was kept, by a clock that may be off by half of what is between them."""
-    dataset = off()
-
-    def thin(track: Track) -> Track:
-        channels = {name: values[::6] for name, values in track.channels.items()}
-        return Track(time_s=track.time_s[::6], channels=channels)
-
-    trials = (t if t.track is None else replace(t, track=thin(t.track)) for t in dataset.trials)
-    return replace(dataset, trials=tuple(trials))
+    return thinned(off(), 6)
 
 
 CASES: dict[str, tuple[Effect, ...]] = {
