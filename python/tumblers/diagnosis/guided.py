@@ -104,7 +104,7 @@ def _with_its(contender: Contender, other: Contender) -> Floats:
     theirs = dict(zip(other.fit.hypothesis.keys, other.point.tolist(), strict=True))
     hypothesis = contender.fit.hypothesis
     own = zip(hypothesis.keys, contender.point.tolist(), strict=True)
-    point = np.array([theirs.get(key, value) for key, value in own])
+    point: Floats = np.array([theirs.get(key, value) for key, value in own])
     return np.clip(point, hypothesis.low, hypothesis.high)
 
 
