@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
-from importlib import import_module
-from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -168,32 +164,3 @@ def test_a_lead_around_another_is_against_one_noise_which_both_follow() -> None:
     assert theirs - mine > 100.0
     # Where a search left it the other gains more by being fitted on.
     assert lead < theirs - mine - 50.0
-
-
-def test_what_leads_once_another_counts_as_the_nominal_model_imposes_its_steps(monkeypatch: pytest.MonkeyPatch) -> None:
-    # The package has the function by the module's name.
-    attribution = import_module("tumblers.diagnosis.attribute")
-    slow, fast = SimpleNamespace(effects=("slow",)), SimpleNamespace(effects=("fast",))
-    resolved, asked = {slow.effects}, []
-
-    def in_steps_of(_: Fitter, leader: Any, made: list[Any], __: Callable[..., None]) -> list[Any]:
-        asked.append(leader)
-        resolved.add(leader.effects)
-        return made
-
-    patched: dict[str, Any] = {
-        "Search": lambda *_: SimpleNamespace(contenders=lambda: [slow, fast], names=()),
-        "_nominal_is_right": lambda _: True,
-        "_ranked": lambda made, *_: (made, 1.0),
-        # The one that led counts as the nominal model.
-        "_with_tolerated": lambda _, made, __: made[::-1],
-        "in_steps_of": in_steps_of,
-        "seen_from_the_best": lambda _, found: found,
-    }
-    for name, instead in patched.items():
-        monkeypatch.setattr(attribution, name, instead)
-    comparison = coarse_lab().comparison
-    monkeypatch.setattr(comparison.simulator, "resolves", lambda effects: effects in resolved)
-    found = attribution.attribute(comparison, [])
-    assert asked == [fast]
-    assert found.contenders == (fast, slow)

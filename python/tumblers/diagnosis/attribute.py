@@ -30,12 +30,13 @@ from ..effects.base import Effect
 from ..progress import OnPhase
 from ..scenario import Scenario
 from .comparison import Comparison
-from .conclusion import in_steps_of
+from .conclusion import OPEN, in_steps_of
 from .contender import Contender, of_fit, of_nominal
 from .fit import Fit
 from .fitter import Fitter
 from .hypothesis import SECOND
 from .occam import log_occam
+from .own_noise import by_itself
 from .predictive import is_right
 from .search import Search
 from .tolerated import is_tolerated, tolerated
@@ -170,6 +171,9 @@ def attribute(
     while True:
         right = _nominal_is_right(fitter)
         ranked, dispersion = _ranked(contenders, comparison, search.names, right)
+        if flattered := _flattered(ranked):
+            contenders = _each_by_itself(fitter, ranked, flattered, tell)
+            continue
         # What counts as the nominal model leaves the lead to another, whose steps may be shorter again.
         if right and resolves(ranked[0].effects):
             ranked = _with_tolerated(fitter, ranked, dispersion)
@@ -192,6 +196,28 @@ def seen_from_the_best(fitter: Fitter, attribution: Attribution) -> Attribution:
     fitter.take_likeliest_noise(attribution.contenders[0].effects)
     seen = [_seen(fitter, contender, first=k == 0) for k, contender in enumerate(attribution.contenders)]
     return replace(attribution, contenders=tuple(seen))
+
+
+def _flattered(ranked: Sequence[Contender]) -> list[Contender]:
+    """Return what leads, or may, by the noise around another that it is far from.
+
+    Where even the best leaves a gap, what is far behind by the objective is near by evidence.
+    """
+    if not ranked[0].names:
+        return []
+    near = ranked[0].log_evidence - OPEN
+    return [c for c in ranked if c.names and not (c.settled or c.lent) and c.log_evidence > near]
+
+
+def _each_by_itself(
+    fitter: Fitter, contenders: Sequence[Contender], which: Sequence[Contender], tell: OnPhase
+) -> list[Contender]:
+    """Hold some of the contenders against their own noise."""
+    made = list(contenders)
+    for n, contender in enumerate(which):
+        tell("each against its own noise", n, len(which))
+        made[made.index(contender)] = by_itself(fitter, contender, evaluations=1)
+    return made
 
 
 def _nominal_is_right(fitter: Fitter) -> bool:
