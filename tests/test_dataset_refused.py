@@ -180,6 +180,25 @@ def test_a_row_may_be_outside_by_what_the_clock_may_be_off(folder: Path, time: f
             dataset.load(folder)
 
 
+@pytest.mark.parametrize(("time", "loads"), [(2.009, True), (2.011, False)])
+def test_a_frame_is_one_of_the_stated_rate_where_rows_leave_some_out(folder: Path, time: float, loads: bool) -> None:
+    (folder / "tracks" / "f05.csv").write_text(f"time_s,x_m\n0,0\n1,0\n{time},0\n")
+    (folder / "dataset.toml").write_text(TEXT.replace("[sensor]", "[sensor]\nframes_per_second = 50"))
+    if loads:
+        assert dataset.load(folder).trials[0].track is not None
+    else:
+        with pytest.raises(InputError, match=r"expected times from 0 s to duration_s, 2 s, give or take 10 ms"):
+            dataset.load(folder)
+
+
+def test_a_track_does_not_excuse_its_own_times(folder: Path) -> None:
+    (folder / "tracks" / "f05.csv").write_text("time_s,x_m\n-1e5,0\n1e5,0\n")
+    for sensor in ("[sensor]", "[sensor]\nframes_per_second = 1e-9"):
+        (folder / "dataset.toml").write_text(TEXT.replace("[sensor]", sensor))
+        with pytest.raises(InputError, match=r"duration_s, 2 s, give or take 1e\+03 ms"):
+            dataset.load(folder)
+
+
 def test_a_tabulated_field_is_read_from_the_folder(folder: Path) -> None:
     (folder / "B.csv").write_text("time_s,Bx_T,By_T,Bz_T\n0,0,0,0.01\n2,0,0.01,0\n")
     (folder / "dataset.toml").write_text(TEXT.replace(FIELD, '{ kind = "table", csv = "B.csv" }'))

@@ -12,7 +12,7 @@ from ..model import Model
 from ..run import Run
 from ..scenario import Scenario
 from .outcome import Outcome
-from .sensor import Sensor
+from .sensor import HALF_A_FRAME, Sensor
 from .track import Track
 
 if TYPE_CHECKING:
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 __all__ = ["LabTrial"]
 
-# A clock that is off by half a frame moves the first frame before the start and the last one beyond the end.
-_SLACK_FRAMES = 0.5
+# A clock that is off by half a frame moves the first frame before the start and the last one beyond the end; this much
+# is never too much.
 _SLACK_S = 5e-3
 
 
@@ -93,7 +93,7 @@ class LabTrial:
         key
             What the track is called in the error.
         sensor
-            Whose clock it is. Half a frame and 5 ms are never too much.
+            Whose clock it is. Half a frame and 5 ms are never too much; a frame lasts no longer than the trial.
 
         Raises
         ------
@@ -102,9 +102,10 @@ class LabTrial:
         """
         if self.track is None or not self.track.time_s.size:
             return
-        slack = max(_SLACK_S, sensor.time_offset_s or 0.0)
-        if self.track.time_s.size > 1:
-            slack = max(slack, _SLACK_FRAMES * self.track.frame_interval_s)
+        interval = self.track.frame_interval_s if self.track.time_s.size > 1 else 0.0
+        # Rows that are far outside are far apart, too: they do not excuse themselves.
+        frame = min(sensor.frame_s(interval), self.duration_s)
+        slack = max(_SLACK_S, sensor.time_offset_s or 0.0, HALF_A_FRAME * frame)
         for time in (float(self.track.time_s[0]), float(self.track.time_s[-1])):
             if not -slack <= time <= self.duration_s + slack:
                 expected = f"times from 0 s to duration_s, {self.duration_s:g} s, give or take {1e3 * slack:.3g} ms"

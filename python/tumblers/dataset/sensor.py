@@ -9,7 +9,7 @@ from typing import Literal, get_args
 from ..check import choice, number, pair
 from ..errors import InputError, show
 
-__all__ = ["TYPICAL_ANGLE_NOISE_DEG", "TYPICAL_POSITION_NOISE_M", "Pixel", "Sensor", "TrackedPoint"]
+__all__ = ["HALF_A_FRAME", "TYPICAL_ANGLE_NOISE_DEG", "TYPICAL_POSITION_NOISE_M", "Pixel", "Sensor", "TrackedPoint"]
 
 Pixel = tuple[float, float]
 TrackedPoint = Literal["body_centre", "centre_of_mass"]
@@ -17,6 +17,9 @@ TrackedPoint = Literal["body_centre", "centre_of_mass"]
 # What stands in a dataset without tracks, for trials that are only proposed.
 TYPICAL_POSITION_NOISE_M = 5.0e-6
 TYPICAL_ANGLE_NOISE_DEG = 1.0
+
+# What a clock is off by where nothing is stated, in frames.
+HALF_A_FRAME = 0.5
 
 _UNIT = 1e-12
 # More noise than this tells nothing, and less no camera has, m and degrees.
@@ -94,17 +97,27 @@ class Sensor:
         right, down = self.y_axis_px
         return -down, right
 
+    def frame_s(self, interval_s: float) -> float:
+        """Return the time of a frame, s: by `frames_per_second` where it is stated.
+
+        Parameters
+        ----------
+        interval_s
+            Between two rows of a track, s, which may leave frames out: it counts where the camera's rate is not stated.
+        """
+        return interval_s if self.frames_per_second is None else 1.0 / self.frames_per_second
+
     def clock_tolerance_s(self, interval_s: float) -> float:
         """Return how far the clock of a track may be off, s.
 
         Parameters
         ----------
         interval_s
-            Between two of its rows, s, which may leave frames out: it counts where the camera's rate is not stated.
+            Between two of its rows, s.
         """
         if self.time_offset_s is not None:
             return self.time_offset_s
-        return 0.5 * (interval_s if self.frames_per_second is None else 1.0 / self.frames_per_second)
+        return HALF_A_FRAME * self.frame_s(interval_s)
 
 
 def _direction(key: str, value: object) -> Pixel:
