@@ -223,11 +223,17 @@ def test_a_robot_at_rest_does_not_climb(strength_T: float, climbs: bool) -> None
     ("change", "line"),
     [
         ({"duration_s": 1e-4}, r"trial[1].duration_s: found 0.0001 s, expected at least two steps of the simulation"),
-        ({"duration_s": 1e6}, "trial[1].duration_s: found 1e+06 s, which make 500000000 poses of 500000300, expected"),
+        (
+            {"duration_s": 1e6},
+            "trial[1].duration_s: found 1e+06 s at 5 Hz and 0.002 s for its clock, which make 500000001 poses of "
+            "500000302, expected at most 500000 in all trials",
+        ),
         (
             {"field": drive(0.01, 1e6)},
-            "trial[1].duration_s: found 0.6 s, which make 36000000 poses of 36000300, expect",
+            "trial[1].duration_s: found 0.6 s at 1e+06 Hz and 0.002 s for its clock, which make 36120000 poses of ",
         ),
+        ({"duration_s": 1e308}, "trial[1].duration_s: found 1e+308 s at 5 Hz and 0 s for its clock, which make inf "),
+        ({"field": drive(0.01, 1e308)}, "trial[1].duration_s: found 0.6 s at 1e+308 Hz and 0.002 s for its clock, "),
     ],
 )
 def test_what_would_fill_the_memory_is_refused_before_it_does(change: dict[str, Any], line: str) -> None:
@@ -236,9 +242,31 @@ def test_what_would_fill_the_memory_is_refused_before_it_does(change: dict[str, 
     with pytest.raises(InputError) as caught:
         diagnose(data, effects=CONSIDERED)
     assert str(caught.value).startswith(line)
-    late = replace(plan(PLANS[:2]), sensor=replace(data.sensor, time_offset_s=7.0))
-    with pytest.raises(InputError, match=r"^sensor\.time_offset_s: found 7 s, expected no more than the longest trial"):
-        diagnose(late, effects=CONSIDERED)
+    assert len(str(caught.value)) < 250
+
+
+@pytest.mark.parametrize(
+    ("sensor", "line"),
+    [
+        ({"time_offset_s": 7.0}, r"^sensor\.time_offset_s: found 7 s, expected no more than the longest trial"),
+        (
+            {"frames_per_second": 0.02},
+            r"^sensor\.frames_per_second: found 0\.02, half a frame of which is 25 s, expected no more than ",
+        ),
+    ],
+)
+def test_a_clock_that_may_be_off_by_more_than_a_trial_is_refused(sensor: dict[str, Any], line: str) -> None:
+    data = plan(PLANS[:2])
+    with pytest.raises(InputError, match=line):
+        diagnose(replace(data, sensor=replace(data.sensor, **sensor)), effects=CONSIDERED)
+
+
+def test_the_poses_are_those_of_what_is_run() -> None:
+    # 120 000 poses a second: what the clock may be late by makes most of them.
+    data = plan([("fast", drive(0.01, 7000.0), 0.0)])
+    Simulator(data, 1)
+    with pytest.raises(InputError, match=r"0\.6 s at 7000 Hz and 0\.602 s for its clock, which make 504840 poses of"):
+        Simulator(replace(data, sensor=replace(data.sensor, time_offset_s=0.6)), 1)
 
 
 @pytest.mark.parametrize(

@@ -127,21 +127,30 @@ class Simulator:
 
     def _check(self) -> None:
         """Refuse trials that are no longer than a step, or that would take days and fill the memory."""
-        trials, offset = self.dataset.trials, self.dataset.sensor.time_offset_s
+        trials, sensor = self.dataset.trials, self.dataset.sensor
         for i, trial in enumerate(trials):
             step = longest_in(trial.field)
             if trial.duration_s < 2.0 * step:
                 expected = f"at least two steps of the simulation, {2.0 * step:g} s"
                 raise InputError(f"trial[{i}].duration_s", f"{trial.duration_s:g} s", expected)
         longest = max(trial.duration_s for trial in trials)
-        if offset is not None and offset > longest:
-            raise InputError("sensor.time_offset_s", f"{offset:g} s", f"no more than the longest trial, {longest:g} s")
-        rows = [int(trial.duration_s / _rows_interval(trial.field)) for trial in trials]
-        if sum(rows) > _MOST_ROWS:
-            most = rows.index(max(rows))
-            found = f"{trials[most].duration_s:g} s, which make {rows[most]} poses of {sum(rows)}"
+        offset = sensor.clock_tolerance_s(0.0)
+        if offset > longest:
+            expected = f"no more than the longest trial, {longest:g} s"
+            if sensor.time_offset_s is not None:
+                raise InputError("sensor.time_offset_s", f"{offset:g} s", expected)
+            found = f"{sensor.frames_per_second:g}, half a frame of which is {offset:g} s"
+            raise InputError("sensor.frames_per_second", found, expected)
+        lasts = [_lengthened_s(t.field, t.duration_s, self._late_s(i)) for i, t in enumerate(trials)]
+        # Floats: a product that is past them is too long as well.
+        rows = np.floor([time * _rows_per_s(trial.field) for time, trial in zip(lasts, trials, strict=True)])
+        if rows.sum() > _MOST_ROWS:
+            most = int(np.argmax(rows))
+            trial, more = trials[most], lasts[most] - trials[most].duration_s
+            cycles = f" at {trial.field.frequency_Hz:g} Hz" if isinstance(trial.field, RotatingField) else ""
+            found = f"{trial.duration_s:g} s{cycles} and {more:.3g} s for its clock, which make {rows[most]:.10g} poses"
             expected = f"at most {_MOST_ROWS} in all trials, one each 2 ms and 60 in a cycle"
-            raise InputError(f"trial[{most}].duration_s", found, expected)
+            raise InputError(f"trial[{most}].duration_s", f"{found} of {rows.sum():.10g}", expected)
 
     def nominal(self, trial: int, divisor: int = 1) -> Scenario:
         """Return the scenario of what the lab believes, long enough for a clock that is off by its tolerance.
@@ -157,10 +166,14 @@ class Simulator:
         if key not in self._nominal:
             lab = self.dataset.trials[trial]
             scenario = lab.scenario(self.dataset, key[1], model=self.model)
-            interval = lab.track.frame_interval_s if lab.track is not None and lab.track.time_s.size > 1 else 0.0
-            late = max(interval, self.dataset.sensor.clock_tolerance_s(interval))
-            self._nominal[key] = _longer(scenario, late + _LONGEST_INTERVAL_S)
+            self._nominal[key] = _longer(scenario, self._late_s(trial))
         return self._nominal[key]
+
+    def _late_s(self, trial: int) -> float:
+        """Return by how much a nominal run is longer than its trial, s."""
+        track = self.dataset.trials[trial].track
+        interval = track.frame_interval_s if track is not None and track.time_s.size > 1 else 0.0
+        return max(interval, self.dataset.sensor.clock_tolerance_s(interval)) + _LONGEST_INTERVAL_S
 
     def scenario(self, job: Job) -> Scenario:
         """Return the scenario of a job with its effects at work, and none left to apply.
@@ -362,10 +375,14 @@ def _seen(path: Path | None, camera: Camera) -> Path | None:
 
 def _longer(scenario: Scenario, time_s: float) -> Scenario:
     """Return a scenario that goes on for a time, at most to the end of its field's table."""
-    duration = scenario.run.duration_s + time_s
-    if isinstance(scenario.field, TableField):
-        duration = max(min(duration, scenario.field.time_s[-1]), scenario.run.duration_s)
+    duration = _lengthened_s(scenario.field, scenario.run.duration_s, time_s)
     return replace(scenario, run=replace(scenario.run, duration_s=duration))
+
+
+def _lengthened_s(field: object, duration_s: float, time_s: float) -> float:
+    if isinstance(field, TableField):
+        return max(min(duration_s + time_s, field.time_s[-1]), duration_s)
+    return duration_s + time_s
 
 
 def _size(path: Path | None) -> int:
@@ -389,15 +406,13 @@ def longest_step_s(scenario: Scenario) -> float:
     return longest
 
 
-def _rows_interval(field: object) -> float:
-    longest = _LONGEST_INTERVAL_S
-    if isinstance(field, RotatingField):
-        longest = min(longest, 1.0 / (_ROWS_PER_CYCLE * field.frequency_Hz))
-    return longest
+def _rows_per_s(field: object) -> float:
+    least = 1.0 / _LONGEST_INTERVAL_S
+    return max(least, _ROWS_PER_CYCLE * field.frequency_Hz) if isinstance(field, RotatingField) else least
 
 
 def _rows_every(scenario: Scenario) -> int:
-    longest = _rows_interval(scenario.field)
+    longest = 1.0 / _rows_per_s(scenario.field)
     return max(1, min(int(longest / scenario.run.fixed_step_s + 1e-9), scenario.run.steps))
 
 
