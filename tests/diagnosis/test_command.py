@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from dataclasses import replace
@@ -52,6 +53,8 @@ def tumble(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
         ),
         (["data", "--out", "strange"], "--out: found 'strange/scenario.toml', of no diagnosis"),
         (["data", "--out", "foreign"], "--out: found 'foreign/diagnosis.json', of no diagnosis"),
+        (["data", "--out", "deep"], "--out: found 'deep/diagnosis.json', of no diagnosis"),
+        (["data", "--out", "pipe"], "--out: found 'pipe/diagnosis.json', of no diagnosis"),
         (["data", "--out", "dangling"], "--out: found the link 'dangling' to nothing"),
         (["data", "--out", "file/out"], "'file' is a file"),
         (["data", "--out", "out", "--effects", ""], "--effects: found ''"),
@@ -69,6 +72,10 @@ def test_bad_input_gets_one_line_and_writes_nothing(tmp_path: Path, arguments: l
     (tmp_path / "strange" / "scenario.toml").write_text("")
     (tmp_path / "foreign").mkdir()
     (tmp_path / "foreign" / "diagnosis.json").write_text('{"patient": "7"}')
+    (tmp_path / "deep").mkdir()
+    (tmp_path / "deep" / "diagnosis.json").write_text("[" * 100_000)
+    (tmp_path / "pipe").mkdir()
+    os.mkfifo(tmp_path / "pipe" / "diagnosis.json")
     (tmp_path / "dangling").symlink_to("gone")
     (tmp_path / "bad.py").write_text("x = 1\n")
     before = sorted(tmp_path.rglob("*"))

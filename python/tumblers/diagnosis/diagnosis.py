@@ -18,6 +18,7 @@ from ..dataset import Dataset
 from ..effects.base import Effect
 from ..effects.catalogue import file_of
 from ..model import Model
+from ..regular_file import read_regular
 from ..scenario import Scenario
 from ..section import write_entry
 from .result import (
@@ -295,7 +296,7 @@ def is_ours(folder: Path) -> bool:
         Any, which need not exist.
     """
     try:
-        table = json.loads((folder / FILES[0]).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+        table = json.loads(read_regular(folder / FILES[0]))
+    except (OSError, RecursionError, ValueError):
         return False
     return isinstance(table, dict) and table.get("format") == FORMAT
