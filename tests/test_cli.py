@@ -106,6 +106,8 @@ def test_presets_are_listed_and_printed(tmp_path: Path) -> None:
         (["simulate", "nowhere.toml", "--out", "run.nc"], "nowhere.toml: found no such file"),
         (["simulate", "scenario.toml", "--out", "nowhere/run.nc"], "nowhere"),
         (["simulate", "scenario.toml", "--out", "run.txt"], ".nc"),
+        (["simulate", "", "--out", "run.nc"], "'SCENARIO.toml': found '', expected a path"),
+        (["simulate", "scenario.toml", "--out", "run.nc", "--plot", ""], "'--plot': found '', expected a path"),
         (["simulate", "scenario.toml", "--out", "scenario.toml"], "--out"),
         (["simulate", "scenario.toml", "--out", "run.nc", "--plot", "run.bmp"], ".png"),
         (["simulate", "scenario.toml", "--out", "run.nc", "--plot", "nowhere/run.png"], "nowhere"),

@@ -26,6 +26,8 @@ from .options import (
     magnetization_cases,
     numbers,
     output_file,
+    path_argument,
+    path_option,
 )
 from .parts import Parts, parts_beside
 from .presets import DRIVES, EXPERIMENTS, ROBOTS, SUBSTRATES, preset_scenario
@@ -49,9 +51,9 @@ app = typer.Typer(
     context_settings={"max_content_width": 120},
 )
 
-_ScenarioFile = Annotated[Path, typer.Argument(metavar="SCENARIO.toml", help="Scenario, format tumblers-scenario/1.")]
-_Out = Annotated[Path, typer.Option("--out", help="Result, a netCDF file (.nc).")]
-_Plot = Annotated[Path | None, typer.Option("--plot", help="Figure (.png, .pdf or .svg).")]
+_ScenarioFile = Annotated[Path, path_argument("SCENARIO.toml", "Scenario, format tumblers-scenario/1.")]
+_Out = Annotated[Path, path_option("--out", "Result, a netCDF file (.nc).")]
+_Plot = Annotated[Path | None, path_option("--plot", "Figure (.png, .pdf or .svg).")]
 
 _DRAFTS = as_option(PAPER_DRAFTS_DEG)
 _THETA1 = as_option(list(dict.fromkeys(theta1 for theta1, _ in PAPER_MAGNETIZATION_DEG)))

@@ -11,17 +11,16 @@ import typer
 from .check import thread_count
 from .errors import InputError
 from .folder import output_folder
+from .options import path_argument, path_option
 
 __all__ = ["diagnose"]
 
 
 def diagnose(
-    dataset: Annotated[Path, typer.Argument(metavar="DATASET", help="Folder with dataset.toml, tumblers-dataset/1.")],
+    dataset: Annotated[Path, path_argument("DATASET", "Folder with dataset.toml, tumblers-dataset/1.")],
     out: Annotated[
         Path,
-        typer.Option(
-            "--out", help="Folder for diagnosis.json, effects.toml, scenario.toml, report.html; made if missing."
-        ),
+        path_option("--out", "Folder for diagnosis.json, effects.toml, scenario.toml, report.html; made if missing."),
     ],
     effects: Annotated[
         list[str] | None,

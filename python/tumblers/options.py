@@ -8,7 +8,7 @@ from decimal import Decimal
 from itertools import pairwise
 from math import floor
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -23,6 +23,8 @@ __all__ = [
     "magnetization_cases",
     "numbers",
     "output_file",
+    "path_argument",
+    "path_option",
 ]
 
 PLOT_SUFFIXES = (".png", ".pdf", ".svg")
@@ -36,6 +38,8 @@ EffectFiles = Annotated[
 ]
 
 _MOST = 100_000
+# As typer shows the type of a path.
+_PATH = "<path>"
 _EXPECTED = "numbers such as 0,1,2 or a range such as 0:15 or 10:360:10"
 
 
@@ -89,6 +93,22 @@ def load_effect_files(texts: Sequence[str] | None) -> None:
         if not word.endswith(".py"):
             raise InputError("--effects", repr(word), "a Python file with effects, .py")
         load_file(word)
+
+
+def path_option(name: str, help: str) -> Any:  # noqa: A002
+    """Return an option that is a path, and not an empty one, which would be the current folder."""
+    return typer.Option(name, parser=_path, metavar=_PATH, help=help)
+
+
+def path_argument(metavar: str, help: str) -> Any:  # noqa: A002
+    """Return an argument that is a path, and not an empty one."""
+    return typer.Argument(parser=_path, metavar=metavar, help=help)
+
+
+def _path(text: str) -> Path:
+    if not text:
+        raise typer.BadParameter("found '', expected a path")
+    return Path(text)
 
 
 def output_file(option: str, path: Path, suffixes: Sequence[str], taken: Sequence[Path]) -> None:

@@ -11,20 +11,20 @@ import typer
 from .check import thread_count
 from .errors import InputError
 from .folder import output_folder
-from .options import numbers, output_file
+from .options import numbers, output_file, path_option
 
 __all__ = ["reproduce"]
 
 
 def reproduce(
     out: Annotated[
-        Path, typer.Option("--out", help="Folder for reproduction.json, index.html, figures and data; made if missing.")
+        Path, path_option("--out", "Folder for reproduction.json, index.html, figures and data; made if missing.")
     ],
     only: Annotated[
         str | None, typer.Option(metavar="NUMBERS", help="Results to run, 2,7 or 1:4; all ten without it.")
     ] = None,
     jobs: Annotated[int | None, typer.Option(help="Threads; all by default. The result does not depend on it.")] = None,
-    page: Annotated[Path | None, typer.Option("--page", help="All rows as a page in Markdown (.md).")] = None,
+    page: Annotated[Path | None, path_option("--page", "All rows as a page in Markdown (.md).")] = None,
 ) -> None:
     """Run every result of the paper and set our numbers beside the paper's, with a verdict and a tested reason.
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from .errors import InputError, unreadable
-from .options import PLOT_SUFFIXES, EffectFiles, load_effect_files, output_file
+from .options import PLOT_SUFFIXES, EffectFiles, load_effect_files, output_file, path_argument, path_option
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -18,15 +18,13 @@ if TYPE_CHECKING:
 __all__ = ["AnimateOption", "CycleOption", "Pictures", "SnapshotsOption", "ViewOption", "view"]
 
 SnapshotsOption = Annotated[
-    Path | None, typer.Option("--snapshots", help="The robot from above at several times (.png, .pdf or .svg).")
+    Path | None, path_option("--snapshots", "The robot from above at several times (.png, .pdf or .svg).")
 ]
 CycleOption = Annotated[
-    Path | None, typer.Option("--cycle", help="One cycle of the field from the side (.png, .pdf or .svg).")
+    Path | None, path_option("--cycle", "One cycle of the field from the side (.png, .pdf or .svg).")
 ]
-AnimateOption = Annotated[
-    Path | None, typer.Option("--animate", help="Animation (.gif, or .mp4 where there is ffmpeg).")
-]
-ViewOption = Annotated[Path | None, typer.Option("--view", help="Interactive 3-D view, one page (.html).")]
+AnimateOption = Annotated[Path | None, path_option("--animate", "Animation (.gif, or .mp4 where there is ffmpeg).")]
+ViewOption = Annotated[Path | None, path_option("--view", "Interactive 3-D view, one page (.html).")]
 
 _SUFFIXES = {"snapshots": PLOT_SUFFIXES, "cycle": PLOT_SUFFIXES, "animate": (".gif", ".mp4"), "view": (".html",)}
 
@@ -110,7 +108,7 @@ class Pictures:
 
 
 def view(
-    run: Annotated[Path, typer.Argument(metavar="RUN.nc", help="Result of `tumblers simulate`.")],
+    run: Annotated[Path, path_argument("RUN.nc", "Result of `tumblers simulate`.")],
     snapshots: SnapshotsOption = None,
     cycle: CycleOption = None,
     animate: AnimateOption = None,

@@ -53,6 +53,8 @@ def tumble(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
         ),
         (["data", "--out", "strange"], "--out: found 'strange/scenario.toml', of no diagnosis"),
         (["data", "--out", "foreign"], "--out: found 'foreign/diagnosis.json', of no diagnosis"),
+        (["data", "--out", ""], "'--out': found '', expected a path"),
+        (["", "--out", "out"], "'DATASET': found '', expected a path"),
         (["data", "--out", "deep"], "--out: found 'deep/diagnosis.json', of no diagnosis"),
         (["data", "--out", "pipe"], "--out: found 'pipe/diagnosis.json', of no diagnosis"),
         (["data", "--out", "dangling"], "--out: found the link 'dangling' to nothing"),

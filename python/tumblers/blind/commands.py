@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from ..errors import InputError
-from ..options import numbers, output_file
+from ..options import numbers, output_file, path_argument, path_option
 from ..parts import Parts, parts_beside
 
 __all__ = ["blind_app"]
@@ -23,14 +23,14 @@ blind_app = typer.Typer(
 )
 
 _Jobs = Annotated[int | None, typer.Option(help="Processes; all cores by default. The result does not depend on it.")]
-_Directory = Annotated[Path, typer.Argument(metavar="DIR", help="Folder of `tumblers blind make`.")]
+_Directory = Annotated[Path, path_argument("DIR", "Folder of `tumblers blind make`.")]
 
 
 @blind_app.command("make")
 def _make(
     seed: Annotated[int, typer.Option(help="What everything is drawn from.")],
     count: Annotated[int, typer.Option(help="Number of datasets.")],
-    out: Annotated[Path, typer.Option("--out", help="Folder; made if it does not exist.")],
+    out: Annotated[Path, path_option("--out", "Folder; made if it does not exist.")],
     jobs: _Jobs = None,
 ) -> None:
     """Write datasets of worlds that are not the model, their seals, and answers.json.
@@ -99,9 +99,9 @@ def _repeat(
 @blind_app.command("score")
 def _score(
     directory: _Directory,
-    answers: Annotated[Path, typer.Option("--answers", help="The file answers.json.")],
-    out: Annotated[Path | None, typer.Option("--out", help="Scores (.json).")] = None,
-    page: Annotated[Path | None, typer.Option("--page", help="Page (.md).")] = None,
+    answers: Annotated[Path, path_option("--answers", "The file answers.json.")],
+    out: Annotated[Path | None, path_option("--out", "Scores (.json).")] = None,
+    page: Annotated[Path | None, path_option("--page", "Page (.md).")] = None,
 ) -> None:
     """Check every seal and score the diagnoses.
 

@@ -9,7 +9,7 @@ from typing import Annotated, Any, get_args
 import typer
 
 from ..check import choice, number
-from ..options import as_option, numbers
+from ..options import as_option, numbers, path_option
 from ..parts import Parts, parts_beside
 from ..robot import DraftModel
 from .defaults import (
@@ -46,8 +46,8 @@ _Robot = Annotated[
 ]
 _Substrate = Annotated[str | None, typer.Option("--substrate", help="A substrate of `tumblers presets`.")]
 _Field = Annotated[str | None, typer.Option("--field", help="A drive of `tumblers presets`.")]
-_Out = Annotated[Path, typer.Option("--out", help="Result, a netCDF file (.nc).")]
-_Plot = Annotated[Path | None, typer.Option("--plot", help="Figure (.png, .pdf or .svg).")]
+_Out = Annotated[Path, path_option("--out", "Result, a netCDF file (.nc).")]
+_Plot = Annotated[Path | None, path_option("--plot", "Figure (.png, .pdf or .svg).")]
 _Jobs = Annotated[int | None, typer.Option(help="Threads; all by default. The result does not depend on it.")]
 
 
