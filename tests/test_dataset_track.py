@@ -146,6 +146,8 @@ REFUSED = [
     ("time_s,x_m,y_m\n0,0,0\n1,3,410\n", "t.csv line 3: y_m 410 m, expected metres, at most 10 from the start"),
     ("time_s,qw,qx,qy,qz\n0,1,,0,0\n", "t.csv line 2: qx nothing beside the others, expected a whole quaternion"),
     ("time_s,qw,qx,qy,qz\n0,1,0,0,0\n1,1,1,0,0\n", "t.csv line 3: qw a quaternion of length 1.414, expected length 1"),
+    ('frame,x_m,particle\n0,0,"a\nb"\n1,q,"a\nb"\n', "t.csv line 5: x_m 'q'"),
+    ('time_s,x_m\n0,"1\n2"\n', "t.csv line 3: x_m '1\\n2'"),
     ('time_s,x_m\n0,"1\n', "t.csv: unexpected end of data, expected a CSV file"),
     (b"time_s,x_m\n0,\xff\n", "bytes that are no UTF-8 text: t.csv, expected a readable CSV file"),
 ]

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 
 from .check import Vector, decimal
-from .errors import InputError, show, unreadable
-from .regular_file import read_regular
+from .csv_rows import read_csv_rows
+from .errors import InputError, show
 
 __all__ = ["read_field_csv"]
 
@@ -30,15 +29,8 @@ def read_field_csv(key: str, path: Path) -> tuple[tuple[float, ...], tuple[Vecto
         For `key`: a file that cannot be read, other columns, a cell that is not a finite number, or rows that are out
         of order or too few.
     """
-    try:
-        lines = read_regular(path).decode("utf-8-sig").splitlines()
-    except (OSError, ValueError) as error:
-        raise InputError(key, f"{unreadable(error)}: {repr(str(path))[1:-1]}", "a readable CSV file") from None
-    try:
-        table = [(number, row) for number, row in enumerate(csv.reader(lines, strict=True), 1) if row]
-    except csv.Error as error:
-        raise InputError(key, f"{path}: {error}", "a CSV file") from None
-    header = [cell.strip() for cell in table[0][1]] if table else []
+    table = read_csv_rows(key, path, repr(str(path))[1:-1])
+    header = table[0][1] if table else []
     if sorted(header) != sorted(_COLUMNS):
         raise InputError(
             key, f"{path} with the columns {show(header)}", f"the columns {', '.join(_COLUMNS)}, each once and no other"

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from ..check import decimal
-from ..errors import InputError, show, unreadable
-from ..regular_file import read_regular
+from ..csv_rows import read_csv_rows
+from ..errors import InputError, show
 from .pixels import to_substrate
 from .sensor import Sensor
 from .track import CHANNELS, QUATERNION, Array, Track, find_fault
@@ -115,15 +115,7 @@ def write_track_csv(track: Track) -> str:
 
 
 def _read(key: str, path: Path, name: str) -> _Table:
-    try:
-        lines = read_regular(path).decode("utf-8-sig").splitlines()
-    except (OSError, ValueError) as error:
-        raise InputError(key, f"{unreadable(error)}: {name}", "a readable CSV file") from None
-    try:
-        rows = [(line, [cell.strip() for cell in row]) for line, row in enumerate(csv.reader(lines, strict=True), 1)]
-    except csv.Error as error:
-        raise InputError(key, f"{name}: {error}", "a CSV file") from None
-    rows = [(line, row) for line, row in rows if row]
+    rows = read_csv_rows(key, path, name)
     header = rows[0][1] if rows else []
     for line, row in rows[1:]:
         if len(row) != len(header):

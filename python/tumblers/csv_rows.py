@@ -1,0 +1,38 @@
+"""The rows of a CSV file that is named in another file."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+from .errors import InputError, unreadable
+from .regular_file import read_regular
+
+__all__ = ["read_csv_rows"]
+
+
+def read_csv_rows(key: str, path: Path, name: str) -> list[tuple[int, list[str]]]:
+    """Return the rows that are not empty, each with the line in which it ends and its cells without spaces around.
+
+    Parameters
+    ----------
+    key
+        The key that names the file, for errors.
+    path, name
+        The file, and what to call it in errors.
+
+    Raises
+    ------
+    InputError
+        For `key`: a file that cannot be read, or that is no CSV.
+    """
+    try:
+        # With the line breaks: a quoted cell may hold one.
+        lines = read_regular(path).decode("utf-8-sig").splitlines(keepends=True)
+    except (OSError, ValueError) as error:
+        raise InputError(key, f"{unreadable(error)}: {name}", "a readable CSV file") from None
+    reader = csv.reader(lines, strict=True)
+    try:
+        return [(reader.line_num, [cell.strip() for cell in row]) for row in reader if row]
+    except csv.Error as error:
+        raise InputError(key, f"{name}: {error}", "a CSV file") from None
