@@ -207,6 +207,13 @@ def test_a_tabulated_field_is_read_from_the_folder(folder: Path) -> None:
     assert dataset.load(folder / "again").trials[0].field == data.trials[0].field
 
 
+def test_a_tabulated_field_that_is_too_short_is_named(folder: Path) -> None:
+    (folder / "B.csv").write_text("time_s,Bx_T,By_T,Bz_T\n0,0,0,0.01\n1.5,0,0.01,0\n")
+    (folder / "dataset.toml").write_text(TEXT.replace(FIELD, '{ kind = "table", csv = "B.csv" }'))
+    with pytest.raises(InputError, match=r"trial\[0\]\.field\.csv: found 'B\.csv' with rows from 0\.0 s to 1\.5 s"):
+        dataset.load(folder)
+
+
 def test_missing_files_get_one_line(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"nowhere: found no such file, expected a tumblers-dataset/1 file"):
         dataset.load(tmp_path / "nowhere")

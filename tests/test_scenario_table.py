@@ -48,7 +48,11 @@ def test_a_table_travels_with_its_scenario(scenario_file: Path, text: str, tmp_p
         (ROWS.replace("0.1,0,0,0.01", "0.1,0,x,0.01"), "line 3: By_T 'x'"),
         (ROWS.replace("0.1,0,0,0.01", "0.1,0,nan,0.01"), "finite"),
         (ROWS.replace("0.1,", "0.6,"), "line 4"),
-        (ROWS.replace("0.5,", "0.2,"), "cover 0 s to 0.25 s"),
+        (ROWS.replace("Bx_T", '"\nBx_T"').replace("0.1,", "x,"), "line 4: time_s 'x'"),
+        (
+            ROWS.replace("0.5,", "0.2,"),
+            "field.csv: found 'field.csv' with rows from 0.0 s to 0.2 s, expected rows that cover 0 s to 0.25 s",
+        ),
         (ROWS.replace("\n0,", "\n0.01,"), "cover 0 s to 0.25 s"),
     ],
 )

@@ -13,7 +13,16 @@ from .errors import InputError, show
 from .field_csv import read_field_csv
 from .section import as_section, known_keys, read_section, require_table
 
-__all__ = ["FIELDS", "Field", "RotatingField", "StaticField", "TableField", "field_from_table", "field_to_table"]
+__all__ = [
+    "FIELDS",
+    "Field",
+    "RotatingField",
+    "StaticField",
+    "TableField",
+    "field_from_table",
+    "field_to_table",
+    "in_its_csv",
+]
 
 _RIGHT_ANGLE = 1e-6
 _COVER = 1e-9
@@ -160,6 +169,21 @@ def field_from_table(value: object, directory: Path, section: str = "field") -> 
         times, values = read_field_csv(f"{section}.csv", directory / text(f"{section}.csv", table["csv"], "a path"))
         return TableField(time_s=times, field_T=values)
     return read_section(kind, section, table, also=["kind"])
+
+
+def in_its_csv(error: InputError, table: object) -> InputError:
+    """Return an error, that of rows which do not cover a run with the CSV that they were read from.
+
+    Parameters
+    ----------
+    error
+        Of a section ``field`` or of what it is part of.
+    table
+        The TOML table of that section.
+    """
+    if error.key != "field.time_s" or not isinstance(table, dict) or "csv" not in table:
+        return error
+    return InputError("field.csv", f"{show(table['csv'])} with rows from {error.found}", error.expected, error.file)
 
 
 def field_to_table(field: Field) -> dict[str, object]:

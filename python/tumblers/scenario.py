@@ -14,7 +14,7 @@ from .atomic import write_files
 from .camera import Camera
 from .check import sequence
 from .errors import InputError, show, unreadable
-from .field import Field, RotatingField, TableField, field_from_table, field_to_table
+from .field import Field, RotatingField, TableField, field_from_table, field_to_table, in_its_csv
 from .initial import Initial
 from .model import RELEASED_TORQUE, MagneticTorque, Model
 from .native_trial import native_trial
@@ -147,18 +147,21 @@ class Scenario:
         if "format" in table and table["format"] != FORMAT:
             raise InputError("format", show(table["format"]), f"'{FORMAT}'")
         known_keys("", table, [*_REQUIRED, "model", *_EXTRAS, "effect"], _REQUIRED)
-        scenario = cls(
-            robot=Robot.from_table(table["robot"]),
-            substrate=read_section(Substrate, "substrate", table["substrate"]),
-            field=field_from_table(table["field"], Path(directory)),
-            run=read_section(Run, "run", table["run"]),
-            model=read_section(Model, "model", table.get("model", {})),
-            initial=read_section(Initial, "initial", table.get("initial", {})),
-            relief=read_section(Relief, "relief", table.get("relief", {})),
-            surroundings=read_section(Surroundings, "surroundings", table.get("surroundings", {})),
-            camera=read_section(Camera, "camera", table.get("camera", {})),
-            effects=_effects_from(table["effect"]) if "effect" in table else (),
-        )
+        try:
+            scenario = cls(
+                robot=Robot.from_table(table["robot"]),
+                substrate=read_section(Substrate, "substrate", table["substrate"]),
+                field=field_from_table(table["field"], Path(directory)),
+                run=read_section(Run, "run", table["run"]),
+                model=read_section(Model, "model", table.get("model", {})),
+                initial=read_section(Initial, "initial", table.get("initial", {})),
+                relief=read_section(Relief, "relief", table.get("relief", {})),
+                surroundings=read_section(Surroundings, "surroundings", table.get("surroundings", {})),
+                camera=read_section(Camera, "camera", table.get("camera", {})),
+                effects=_effects_from(table["effect"]) if "effect" in table else (),
+            )
+        except InputError as error:
+            raise in_its_csv(error, table["field"]) from None
         scenario.check()
         return scenario
 

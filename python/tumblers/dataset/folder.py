@@ -10,7 +10,7 @@ from typing import TypeVar
 
 from ..check import text
 from ..errors import InputError, show, unreadable
-from ..field import Field, field_from_table
+from ..field import Field, field_from_table, in_its_csv
 from ..model import Model
 from ..regular_file import read_regular
 from ..robot import Robot
@@ -120,7 +120,7 @@ def _trial(i: int, value: object, directory: Path, sensor: Sensor) -> LabTrial:
         }
         return LabTrial(**(table | made))  # type: ignore[arg-type]
     except InputError as error:
-        raise _in_trial(error, key) from None
+        raise _in_trial(in_its_csv(error, table["field"]), key) from None
 
 
 def _in_trial(error: InputError, key: str) -> InputError:
