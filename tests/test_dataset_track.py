@@ -134,9 +134,11 @@ REFUSED = [
     ("time_s,x_m\n0,inf\n", "t.csv line 2: x_m 'inf'"),
     ("time_s,x_m\n,0\n", "t.csv line 2: time_s '', expected a finite number"),
     ("time_s,x_m\n0\n", "t.csv line 2 with 1 cells, expected 2"),
-    ("time_s,x_m\n0.2,0\n0.1,0\n", "t.csv line 3: time_s 0.1 s after 0.2 s, expected times that increase"),
-    ("time_s,x_m\n0.2,0\n0.2,0\n", "t.csv line 3: time_s 0.2 s a second time, expected times that increase"),
-    ("frame,x,y\n5,0,0\n4,0,0\n", "t.csv line 3: frame 0.08 s after 0.1 s"),
+    ("time_s,x_m\n0.2,0\n0.1,0\n", "t.csv line 3: time_s '0.1' after '0.2', expected times that increase"),
+    ("time_s,x_m\n0.2,0\n0.2,0\n", "t.csv line 3: time_s '0.2' a second time, expected times that increase"),
+    ("frame,x,y\n5,0,0\n4,0,0\n", "t.csv line 3: frame '4' after '5', expected times that increase"),
+    ("frame,x,y\n5,0,0\n5.0,0,0\n", "t.csv line 3: frame '5.0' a second time, expected times that increase"),
+    ("time_s,x_m\n1e308,0\n-1e308,0\n", "t.csv line 3: time_s '-1e308' after '1e308'"),
     ("frame,x,y\n0.5,0,0\n", "t.csv line 2: frame '0.5', expected a whole number"),
     ("frame,x,y,particle\n0,0,0,1\n0,0,0,2\n", "the particles ['1', '2'], expected the rows of a single one"),
     ("frame,x,y\n0,1,\n", "t.csv line 2: y nothing beside the other, expected both pixels or none"),
@@ -161,6 +163,18 @@ def test_a_file_is_refused_in_one_line(tmp_path: Path, text: str | bytes, words:
     assert words in line
     assert line.startswith(("track: found t.csv", "track: found bytes"))
     assert "\n" not in line
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_rate_that_makes_no_times_of_frames_is_named(tmp_path: Path) -> None:
+    line = r"t\.csv line 3: frame '1e308', which 0\.001 frames_per_second make inf, expected a finite number"
+    with pytest.raises(InputError, match=line):
+        read(tmp_path, "frame,x,y\n0,0,0\n1e308,0,0\n", frames_per_second=1e-3)
+
+
+@pytest.mark.filterwarnings("error")
+def test_times_past_the_floats_make_no_warning(tmp_path: Path) -> None:
+    assert np.isinf(read(tmp_path, "time_s,x_px,y_px\n-1.7e308,0,0\n1.7e308,0,1\n").frame_interval_s)
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..errors import InputError
 from .sensor import Sensor
-from .track import Array
+from .track import Array, median_interval_s
 
 __all__ = ["to_substrate"]
 
@@ -23,7 +23,7 @@ def to_substrate(x_px: Array, y_px: Array, time_s: Array, sensor: Sensor, name: 
     x_px, y_px
         To the right and downwards in the image, pixels, shape (n,); NaN in both where a frame was lost.
     time_s
-        Times of the frames, s, shape (n,).
+        Increasing times of the frames, s, shape (n,).
     sensor
         Scale, origin and axes.
     name
@@ -40,11 +40,10 @@ def to_substrate(x_px: Array, y_px: Array, time_s: Array, sensor: Sensor, name: 
     if sensor.origin_px is not None:
         right, down = sensor.origin_px
     elif seen.size:
-        late, interval = float(time_s[seen[0]]), float(np.median(np.diff(time_s))) if time_s.size > 1 else 0.0
+        late, interval = float(time_s[seen[0]]), median_interval_s(time_s) if time_s.size > 1 else 0.0
         moved = 1e-6 * sensor.micrometres_per_pixel * _moved_px(x_px[seen], y_px[seen], time_s[seen])
         left = late > _PUNCTUAL * interval and moved > sensor.origin_tolerance_m
-        # Times that fall are refused with the whole track.
-        if interval >= 0.0 and (late > _LATE * interval or left):
+        if late > _LATE * interval or left:
             way = f" some {1e6 * moved:.0f} µm" if moved > 0.0 else ""
             expected = (
                 f"the pixel of the robot's start: the first in {name} is at {late:g} s, when it has moved{way} "
@@ -62,7 +61,9 @@ def to_substrate(x_px: Array, y_px: Array, time_s: Array, sensor: Sensor, name: 
 
 def _moved_px(x_px: Array, y_px: Array, time_s: Array) -> float:
     """Return how far a robot has come by the first frame that has it, at the pace of the first two, pixels."""
-    if time_s.size < 2 or time_s[1] <= time_s[0]:
+    if time_s.size < 2:
         return 0.0
     step = float(np.hypot(x_px[1] - x_px[0], y_px[1] - y_px[0]))
-    return step * float(time_s[0]) / float(time_s[1] - time_s[0])
+    # As Python's floats, which become infinite without a warning.
+    first, second = float(time_s[0]), float(time_s[1])
+    return step * first / (second - first)

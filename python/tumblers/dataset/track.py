@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -11,7 +11,18 @@ from numpy.typing import NDArray
 
 from ..errors import InputError, show
 
-__all__ = ["ANGLES", "CHANNELS", "POSITIONS", "QUATERNION", "Array", "Fault", "Track", "find_fault"]
+__all__ = [
+    "ANGLES",
+    "CHANNELS",
+    "POSITIONS",
+    "QUATERNION",
+    "Array",
+    "Fault",
+    "Track",
+    "find_disorder",
+    "find_fault",
+    "median_interval_s",
+]
 
 Array = NDArray[np.float64]
 
@@ -95,7 +106,35 @@ class Track:
     @property
     def frame_interval_s(self) -> float:
         """Median time between two rows, s; NaN with fewer than two."""
-        return float(np.median(np.diff(self.time_s))) if self.time_s.size > 1 else float("nan")
+        return median_interval_s(self.time_s)
+
+
+def median_interval_s(time_s: Array) -> float:
+    """Return the median time between two rows, s; NaN with fewer than two, infinite where it is past the floats.
+
+    Parameters
+    ----------
+    time_s
+        Increasing times, s, shape (n,).
+    """
+    with np.errstate(over="ignore"):
+        return float(np.median(np.diff(time_s))) if time_s.size > 1 else float("nan")
+
+
+def find_disorder(times: Array, words: Callable[[int], str]) -> Fault | None:
+    """Return the first row that is not later than the one before it, or None.
+
+    Parameters
+    ----------
+    times
+        In any unit, finite, shape (n,).
+    words
+        What to call the time of a row, by its number.
+    """
+    for row in np.flatnonzero(times[1:] <= times[:-1]).tolist():
+        after = "a second time" if times[row + 1] == times[row] else f"after {words(row)}"
+        return Fault(row + 1, "time_s", f"{words(row + 1)} {after}", "times that increase")
+    return None
 
 
 def find_fault(time_s: Array, channels: Mapping[str, Array]) -> Fault | None:
@@ -110,10 +149,8 @@ def find_fault(time_s: Array, channels: Mapping[str, Array]) -> Fault | None:
     """
     for row in np.flatnonzero(~np.isfinite(time_s)):
         return Fault(int(row), "time_s", show(float(time_s[row])), "a finite number")
-    for row in np.flatnonzero(np.diff(time_s) <= 0.0):
-        twice = time_s[row + 1] == time_s[row]
-        found = f"{time_s[row + 1]:g} s {'a second time' if twice else f'after {time_s[row]:g} s'}"
-        return Fault(int(row) + 1, "time_s", found, "times that increase")
+    if (disorder := find_disorder(time_s, lambda row: f"{time_s[row]:g} s")) is not None:
+        return disorder
     for name, values in channels.items():
         for row in np.flatnonzero(np.isinf(values)):
             return Fault(int(row), name, show(float(values[row])), "a finite number, or none for a lost frame")

@@ -15,7 +15,7 @@ from ..csv_rows import read_csv_rows
 from ..errors import InputError, show
 from .pixels import to_substrate
 from .sensor import Sensor
-from .track import CHANNELS, QUATERNION, Array, Track, find_fault
+from .track import CHANNELS, QUATERNION, Array, Track, find_disorder, find_fault
 
 __all__ = ["read_track_csv", "write_track_csv"]
 
@@ -75,15 +75,7 @@ def read_track_csv(key: str, path: Path, name: str, sensor: Sensor) -> Track:
     table = _read(key, path, name)
     clock, pixels = _columns(table)
     _one_particle(table)
-    if clock == "frame":
-        if sensor.frames_per_second is None:
-            raise InputError("sensor.frames_per_second", "no such key", f"it, for the frames of {name}")
-        frames = table.numbers("frame", "a whole number", lost=False)
-        for row in np.flatnonzero(frames != np.round(frames)):
-            raise table.refuse(int(row), "frame", show(table.cells["frame"][row]), "a whole number")
-        time = frames / sensor.frames_per_second
-    else:
-        time = table.numbers("time_s", "a finite number", lost=False)
+    time = _times(table, clock, sensor)
     channels = {column: table.numbers(column, _LOST, lost=True) for column in CHANNELS if column in table.cells}
     if pixels is not None:
         x, y = (table.numbers(column, _LOST, lost=True) for column in pixels)
@@ -93,8 +85,7 @@ def read_track_csv(key: str, path: Path, name: str, sensor: Sensor) -> Track:
         channels["x_m"], channels["y_m"] = to_substrate(x, y, time, sensor, name)
     fault = find_fault(time, channels)
     if fault is not None:
-        column = clock if fault.column == "time_s" else fault.column
-        raise table.refuse(fault.row, column, fault.found, fault.expected)
+        raise table.refuse(fault.row, fault.column, fault.found, fault.expected)
     return Track(time_s=time, channels=channels)
 
 
@@ -131,6 +122,26 @@ def _read(key: str, path: Path, name: str) -> _Table:
             raise InputError(key, f"{name} with two columns {show(column)}", expected)
         cells[column] = entries
     return _Table(key=key, name=name, lines=[line for line, _ in rows[1:]], cells=cells)
+
+
+def _times(table: _Table, clock: str, sensor: Sensor) -> Array:
+    """Return the times, s, shape (n,)."""
+    rate = sensor.frames_per_second if clock == "frame" else 1.0
+    if rate is None:
+        raise InputError("sensor.frames_per_second", "no such key", f"it, for the frames of {table.name}")
+    expected = "a whole number" if clock == "frame" else "a finite number"
+    values, cells = table.numbers(clock, expected, lost=False), table.cells[clock]
+    if clock == "frame":
+        for row in np.flatnonzero(values != np.round(values)):
+            raise table.refuse(int(row), clock, show(cells[row]), expected)
+    if (disorder := find_disorder(values, lambda row: show(cells[row]))) is not None:
+        raise table.refuse(disorder.row, clock, disorder.found, disorder.expected)
+    with np.errstate(over="ignore"):
+        time: Array = values / rate
+    if (fault := find_fault(time, {})) is not None:
+        found = f"{show(cells[fault.row])}, which {rate:g} frames_per_second make {fault.found}"
+        raise table.refuse(fault.row, clock, found, fault.expected)
+    return time
 
 
 def _columns(table: _Table) -> tuple[str, tuple[str, str] | None]:
