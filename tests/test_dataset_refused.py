@@ -42,6 +42,7 @@ REFUSED = [
     ("[sensor]", "[sensor]\nframes_per_second = 0", "sensor.frames_per_second", "greater than 0"),
     ("[sensor]", "[sensor]\norigin_px = [1, 2, 3]", "sensor.origin_px", "a list of 2 numbers"),
     ("[sensor]", "[sensor]\norigin_px = [1, 'a']", "sensor.origin_px[1]", "'a'"),
+    ("[sensor]", "[sensor]\norigin_px = [1, -2e9]", "sensor.origin_px[1]", "at least -1e+09"),
     ("[sensor]", "[sensor]\ny_axis_px = [0, 0]", "sensor.y_axis_px", "not zero"),
     ("[sensor]", "[sensor]\ny_axis_px = [1]", "sensor.y_axis_px", "a list of 2 numbers"),
     ("[sensor]", "[sensor]\ntime_offset_s = -1", "sensor.time_offset_s", "at least 0"),

@@ -166,6 +166,24 @@ def test_a_file_is_refused_in_one_line(tmp_path: Path, text: str | bytes, words:
 
 
 @pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(
+    ("rows", "scale", "words"),
+    [
+        ("320,410\n320,1e308", 6.5, "t.csv line 3: y '1e308', expected a pixel of an image, at most 1e+09"),
+        ("320,410\n-1e9,410", 6.5, "line 3: x '-1e9' and y '410', of which 6.5 micrometres_per_pixel make x_m -65"),
+        ("320,410\n320,1e9", 1e308, "line 3: x '320' and y '1e9', of which 1e+308 micrometres_per_pixel make y_m -inf"),
+    ],
+)
+def test_pixels_that_are_too_far_out_are_named_as_in_the_file(
+    tmp_path: Path, rows: str, scale: float, words: str
+) -> None:
+    first, second = rows.split("\n")
+    with pytest.raises(InputError) as caught:
+        read(tmp_path, f"frame,x,y\n0,{first}\n1,{second}\n", micrometres_per_pixel=scale)
+    assert words in str(caught.value)
+
+
+@pytest.mark.filterwarnings("error")
 def test_a_rate_that_makes_no_times_of_frames_is_named(tmp_path: Path) -> None:
     line = r"t\.csv line 3: frame '1e308', which 0\.001 frames_per_second make inf, expected a finite number"
     with pytest.raises(InputError, match=line):

@@ -126,9 +126,12 @@ def decimal(text: str) -> float:
     return float(text)
 
 
-def pair(key: str, value: object) -> tuple[float, float]:
-    """Return two finite numbers."""
+def pair(key: str, value: object, *, most: float | None = None) -> tuple[float, float]:
+    """Return two finite numbers, neither more than `most` from zero."""
     x, y = _numbers(key, value, 2)
+    if most is not None:
+        for i, entry in enumerate((x, y)):
+            number(f"{key}[{i}]", entry, least=-most, most=most)
     return x, y
 
 

@@ -21,7 +21,8 @@ def to_substrate(x_px: Array, y_px: Array, time_s: Array, sensor: Sensor, name: 
     Parameters
     ----------
     x_px, y_px
-        To the right and downwards in the image, pixels, shape (n,); NaN in both where a frame was lost.
+        To the right and downwards in the image, pixels, at most `MOST_PX`, shape (n,); NaN in both where a frame was
+        lost.
     time_s
         Increasing times of the frames, s, shape (n,).
     sensor
@@ -56,7 +57,9 @@ def to_substrate(x_px: Array, y_px: Array, time_s: Array, sensor: Sensor, name: 
     scale = 1e-6 * sensor.micrometres_per_pixel
     (x_right, x_down), (y_right, y_down) = sensor.x_axis_px, sensor.y_axis_px
     along, across = x_px - right, y_px - down
-    return scale * (x_right * along + x_down * across), scale * (y_right * along + y_down * across)
+    # By a scale that is out of all bounds the places become infinite, and are refused as such.
+    with np.errstate(over="ignore"):
+        return scale * (x_right * along + x_down * across), scale * (y_right * along + y_down * across)
 
 
 def _moved_px(x_px: Array, y_px: Array, time_s: Array) -> float:

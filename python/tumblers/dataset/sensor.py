@@ -9,7 +9,15 @@ from typing import Literal, get_args
 from ..check import choice, number, pair
 from ..errors import InputError, show
 
-__all__ = ["HALF_A_FRAME", "TYPICAL_ANGLE_NOISE_DEG", "TYPICAL_POSITION_NOISE_M", "Pixel", "Sensor", "TrackedPoint"]
+__all__ = [
+    "HALF_A_FRAME",
+    "MOST_PX",
+    "TYPICAL_ANGLE_NOISE_DEG",
+    "TYPICAL_POSITION_NOISE_M",
+    "Pixel",
+    "Sensor",
+    "TrackedPoint",
+]
 
 Pixel = tuple[float, float]
 TrackedPoint = Literal["body_centre", "centre_of_mass"]
@@ -20,6 +28,9 @@ TYPICAL_ANGLE_NOISE_DEG = 1.0
 
 # What a clock is off by where nothing is stated, in frames.
 HALF_A_FRAME = 0.5
+
+# No image has a pixel so far out, and arithmetic with this is far from the ends of the floats.
+MOST_PX = 1e9
 
 _UNIT = 1e-12
 # More noise than this tells nothing, and less no camera has, m and degrees.
@@ -87,7 +98,7 @@ class Sensor:
         put("heading_tolerance_deg", heading)
         put("scale_tolerance", number("sensor.scale_tolerance", self.scale_tolerance, least=0.0, below=1.0))
         if self.origin_px is not None:
-            put("origin_px", pair("sensor.origin_px", self.origin_px))
+            put("origin_px", pair("sensor.origin_px", self.origin_px, most=MOST_PX))
         put("y_axis_px", _direction("sensor.y_axis_px", self.y_axis_px))
         choice("sensor.tracked_point", self.tracked_point, get_args(TrackedPoint))
 

@@ -14,7 +14,7 @@ from ..check import decimal
 from ..csv_rows import read_csv_rows
 from ..errors import InputError, show
 from .pixels import to_substrate
-from .sensor import Sensor
+from .sensor import MOST_PX, Sensor
 from .track import CHANNELS, QUATERNION, Array, Track, find_disorder, find_fault
 
 __all__ = ["read_track_csv", "write_track_csv"]
@@ -82,10 +82,19 @@ def read_track_csv(key: str, path: Path, name: str, sensor: Sensor) -> Track:
         for row in np.flatnonzero(np.isnan(x) != np.isnan(y)):
             missing = pixels[0] if np.isnan(x[row]) else pixels[1]
             raise table.refuse(int(row), missing, "nothing beside the other", "both pixels or none")
+        for column, values in zip(pixels, (x, y), strict=True):
+            for row in np.flatnonzero(np.abs(values) > MOST_PX):
+                found = show(table.cells[column][row])
+                raise table.refuse(int(row), column, found, f"a pixel of an image, at most {MOST_PX:g}")
         channels["x_m"], channels["y_m"] = to_substrate(x, y, time, sensor, name)
     fault = find_fault(time, channels)
     if fault is not None:
-        raise table.refuse(fault.row, fault.column, fault.found, fault.expected)
+        column, found = fault.column, fault.found
+        if column not in table.cells and pixels is not None:
+            column, (x_cell, y_cell) = pixels[0], (show(table.cells[pixel][fault.row]) for pixel in pixels)
+            scale = f"{sensor.micrometres_per_pixel:g} micrometres_per_pixel"
+            found = f"{x_cell} and {pixels[1]} {y_cell}, of which {scale} make {fault.column} {found}"
+        raise table.refuse(fault.row, column, found, fault.expected)
     return Track(time_s=time, channels=channels)
 
 
