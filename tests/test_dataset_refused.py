@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -56,7 +57,12 @@ REFUSED = [
     ('id = "slope"', 'id = "f05"', "trial[1].id", "found 'f05' again, expected another id than trial[0]"),
     ("duration_s = 4\n", "", "trial[1].duration_s", "no such key"),
     ("duration_s = 4", "duration_s = 0", "trial[1].duration_s", "greater than 0"),
-    ("duration_s = 2.0", "duration_s = 0.5", "trial[0].track", "a row at 1 s, expected times from 0 s to"),
+    (
+        "duration_s = 2.0",
+        "duration_s = 0.5",
+        "trial[0].track",
+        "found tracks/f05.csv line 4: time_s '1.0', expected times from 0 s to duration_s, 0.5 s, give",
+    ),
     ("incline_deg = 30.0", "incline_deg = 90", "trial[1].incline_deg", "less than 90"),
     ("incline_deg = 30.0", "slope_deg = 30", "trial[1].slope_deg", "unknown key"),
     ("incline_deg = 30.0", "gravity_m_per_s2 = -1", "trial[1].gravity_m_per_s2", "at least 0"),
@@ -165,7 +171,7 @@ def test_a_row_may_be_half_a_frame_outside(folder: Path, time: float, loads: boo
     if loads:
         assert dataset.load(folder).trials[0].track is not None
     else:
-        with pytest.raises(InputError, match=rf"trial\[0\]\.track: found a row at {time} s"):
+        with pytest.raises(InputError, match=rf"trial\[0\]\.track: found tracks/f05\.csv line [26]: time_s '{time}', "):
             dataset.load(folder)
 
 
@@ -177,7 +183,7 @@ def test_a_row_may_be_outside_by_what_the_clock_may_be_off(folder: Path, time: f
     if loads:
         assert dataset.load(folder).trials[0].track is not None
     else:
-        with pytest.raises(InputError, match=rf"trial\[0\]\.track: found a row at {time} s.* give or take 200 ms"):
+        with pytest.raises(InputError, match=rf"trial\[0\]\.track: .* time_s '{time}', .* give or take 200 ms"):
             dataset.load(folder)
 
 
@@ -190,6 +196,23 @@ def test_a_frame_is_one_of_the_stated_rate_where_rows_leave_some_out(folder: Pat
     else:
         with pytest.raises(InputError, match=r"expected times from 0 s to duration_s, 2 s, give or take 10 ms"):
             dataset.load(folder)
+
+
+def test_a_frame_outside_its_trial_is_named_as_in_the_file(folder: Path) -> None:
+    (folder / "tracks" / "f05.csv").write_text("frame,x_m\n0,0\n50,0\n99.0,0\n")
+    (folder / "dataset.toml").write_text(TEXT.replace("[sensor]", "[sensor]\nframes_per_second = 25"))
+    with pytest.raises(
+        InputError, match=r"found tracks/f05\.csv line 4: frame '99\.0', which is 3\.96 s by frames_per_second,"
+    ):
+        dataset.load(folder)
+
+
+def test_a_row_outside_its_trial_is_refused_without_a_file_too(folder: Path) -> None:
+    data = dataset.load(folder)
+    with pytest.raises(
+        InputError, match=r"^trial\[0\]\.track: found a row at 1 s, expected times from 0 s to duration"
+    ):
+        replace(data, trials=(replace(data.trials[0], duration_s=0.5),))
 
 
 def test_a_track_does_not_excuse_its_own_times(folder: Path) -> None:

@@ -17,7 +17,7 @@ PIXELS = {"position_noise_m": 3e-6, "angle_noise_deg": 1.0, "micrometres_per_pix
 def read(folder: Path, text: str | bytes, **sensor: object) -> Track:
     path = folder / "t.csv"
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
-    return read_track_csv("track", path, "t.csv", Sensor(**PIXELS | sensor))  # type: ignore[arg-type]
+    return read_track_csv("track", path, "t.csv", Sensor(**PIXELS | sensor)).track  # type: ignore[arg-type]
 
 
 def test_lost_frames_are_nan_and_counted(tmp_path: Path) -> None:

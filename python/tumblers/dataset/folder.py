@@ -22,7 +22,7 @@ from .lab_trial import LabTrial
 from .outcome import Outcome
 from .sensor import TYPICAL_ANGLE_NOISE_DEG, TYPICAL_POSITION_NOISE_M, Sensor
 from .track import ANGLES, Track
-from .track_csv import read_track_csv
+from .track_csv import TrackFile, read_track_csv
 
 __all__ = ["load"]
 
@@ -113,12 +113,18 @@ def _trial(i: int, value: object, directory: Path, sensor: Sensor) -> LabTrial:
         return reader(table[name]) if name in table else None
 
     try:
+        field = _field(table["field"], directory)
+        file = read("track", lambda entry: _track(entry, directory, sensor))
         made = {
-            "field": _field(table["field"], directory),
-            "track": read("track", lambda entry: _track(entry, directory, sensor)),
+            "field": field,
+            "track": None if file is None else file.track,
             "outcome": read("outcome", lambda entry: read_section(Outcome, "outcome", entry)),
         }
-        return LabTrial(**(table | made))  # type: ignore[arg-type]
+        trial = LabTrial(**(table | made))  # type: ignore[arg-type]
+        if file is not None:
+            # The whole dataset checks it again, and would not know where in the file it is.
+            trial.covers_track("track", sensor, file.time_of)
+        return trial
     except InputError as error:
         raise _in_trial(in_its_csv(error, table["field"]), key) from None
 
@@ -137,7 +143,7 @@ def _field(value: object, directory: Path) -> Field:
     return field_from_table(table, directory)
 
 
-def _track(value: object, directory: Path, sensor: Sensor) -> Track:
+def _track(value: object, directory: Path, sensor: Sensor) -> TrackFile:
     path = _inside("track", text("track", value, "a path"), directory)
     return read_track_csv("track", path, repr(str(value))[1:-1], sensor)
 

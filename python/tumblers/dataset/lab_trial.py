@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -85,7 +86,7 @@ class LabTrial:
             expected = "a static field or a table, in which the robot comes to rest"
             raise InputError("trial.outcome.tilt_deg", f"{show(self.outcome.tilt_deg)} in a rotating field", expected)
 
-    def covers_track(self, key: str, sensor: Sensor) -> None:
+    def covers_track(self, key: str, sensor: Sensor, time_of: Callable[[int], str] | None = None) -> None:
         """Refuse a track with rows outside the trial by more than the clock may be off.
 
         Parameters
@@ -94,6 +95,8 @@ class LabTrial:
             What the track is called in the error.
         sensor
             Whose clock it is. Half a frame and 5 ms are never too much; a frame lasts no longer than the trial.
+        time_of
+            What to call a row in the error, by its number; by its time if None.
 
         Raises
         ------
@@ -106,10 +109,11 @@ class LabTrial:
         # Rows that are far outside are far apart, too: they do not excuse themselves.
         frame = min(sensor.frame_s(interval), self.duration_s)
         slack = max(_SLACK_S, sensor.time_offset_s or 0.0, HALF_A_FRAME * frame)
-        for time in (float(self.track.time_s[0]), float(self.track.time_s[-1])):
+        for row in (0, self.track.time_s.size - 1):
+            time = float(self.track.time_s[row])
             if not -slack <= time <= self.duration_s + slack:
                 expected = f"times from 0 s to duration_s, {self.duration_s:g} s, give or take {1e3 * slack:.3g} ms"
-                raise InputError(key, f"a row at {time:g} s", expected)
+                raise InputError(key, f"a row at {time:g} s" if time_of is None else time_of(row), expected)
 
     def scenario(
         self, dataset: Dataset, step_s: float, *, model: Model | None = None, output_every_s: float | None = None

@@ -17,7 +17,7 @@ from .pixels import to_substrate
 from .sensor import MOST_PX, Sensor
 from .track import CHANNELS, QUATERNION, Array, Track, find_disorder, find_fault
 
-__all__ = ["read_track_csv", "write_track_csv"]
+__all__ = ["TrackFile", "read_track_csv", "write_track_csv"]
 
 _PIXELS = (("x_px", "y_px"), ("x", "y"))
 # What trackpy and pandas write beside frame, x and y; it says nothing about where the robot is.
@@ -34,8 +34,11 @@ class _Table:
     lines: list[int]
     cells: dict[str, list[str]]
 
+    def place(self, row: int, column: str) -> str:
+        return f"{self.name} line {self.lines[row]}: {column}"
+
     def refuse(self, row: int, column: str, found: str, expected: str) -> InputError:
-        return InputError(self.key, f"{self.name} line {self.lines[row]}: {column} {found}", expected)
+        return InputError(self.key, f"{self.place(row, column)} {found}", expected)
 
     def numbers(self, column: str, expected: str, *, lost: bool) -> Array:
         values = np.full(len(self.lines), np.nan)
@@ -51,7 +54,31 @@ class _Table:
         return values
 
 
-def read_track_csv(key: str, path: Path, name: str, sensor: Sensor) -> Track:
+@dataclass(frozen=True, kw_only=True, slots=True)
+class TrackFile:
+    """A track, and where its rows stand in its file.
+
+    Attributes
+    ----------
+    track
+        The track.
+    table, clock
+        The cells, and the column of the times.
+    """
+
+    track: Track
+    table: _Table
+    clock: str
+
+    def time_of(self, row: int) -> str:
+        """Return the time of a row of the track, by its number, as it stands in the file."""
+        words = f"{self.table.place(row, self.clock)} {show(self.table.cells[self.clock][row])}"
+        return (
+            words if self.clock == "time_s" else f"{words}, which is {self.track.time_s[row]:g} s by frames_per_second"
+        )
+
+
+def read_track_csv(key: str, path: Path, name: str, sensor: Sensor) -> TrackFile:
     """Return the track of a CSV.
 
     The times are a column ``time_s`` or, with `frames_per_second`, ``frame``. Beside it stand any of `CHANNELS`, where
@@ -95,7 +122,7 @@ def read_track_csv(key: str, path: Path, name: str, sensor: Sensor) -> Track:
             scale = f"{sensor.micrometres_per_pixel:g} micrometres_per_pixel"
             found = f"{x_cell} and {pixels[1]} {y_cell}, of which {scale} make {fault.column} {found}"
         raise table.refuse(fault.row, column, found, fault.expected)
-    return Track(time_s=time, channels=channels)
+    return TrackFile(track=Track(time_s=time, channels=channels), table=table, clock=clock)
 
 
 def write_track_csv(track: Track) -> str:
