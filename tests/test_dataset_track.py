@@ -53,6 +53,9 @@ def test_trackpy_columns_with_their_index(tmp_path: Path) -> None:
 def test_frames_that_trackpy_writes_twice(tmp_path: Path) -> None:
     track = read(tmp_path, "frame,y,x,frame,particle\n0,100,50,0,3\n5,98,51,5,3\n")
     np.testing.assert_allclose(track.time_s, [0.0, 0.1])
+    # As pandas writes them where a frame is missing in one of them.
+    track = read(tmp_path, "frame,y,x,frame,particle\n0,100,50,0.0,3\n5,98,51,5.0,3.0\n6,,,6.0,\n")
+    np.testing.assert_allclose(track.time_s, [0.0, 0.1, 0.12])
     with pytest.raises(InputError, match="two columns 'frame', expected the same frames in both"):
         read(tmp_path, "frame,y,x,frame\n0,100,50,0\n5,98,51,6\n")
     with pytest.raises(InputError, match="two columns 'x', expected each column once"):
@@ -141,6 +144,8 @@ REFUSED = [
     ("time_s,x_m\n1e308,0\n-1e308,0\n", "t.csv line 3: time_s '-1e308' after '1e308'"),
     ("frame,x,y\n0.5,0,0\n", "t.csv line 2: frame '0.5', expected a whole number"),
     ("frame,x,y,particle\n0,0,0,1\n0,0,0,2\n", "the particles ['1', '2'], expected the rows of a single one"),
+    ("frame,x,y,particle\n0,0,0,1\n1,0,0,\n", "the particles ['', '1'], expected the rows of a single one"),
+    ("frame,x,y,particle\n0,0,0,nan\n1,0,0,1\n", "the particles ['1', 'nan'], expected the rows of a single one"),
     ("frame,x,y\n0,1,\n", "t.csv line 2: y nothing beside the other, expected both pixels or none"),
     ("time_s,x_m\n0,1_0e-6\n", "t.csv line 2: x_m '1_0e-6', expected a finite number"),
     ("time_s,x_m\n0,１\n", "t.csv line 2: x_m '１', expected a finite number"),

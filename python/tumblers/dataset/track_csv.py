@@ -101,7 +101,7 @@ def read_track_csv(key: str, path: Path, name: str, sensor: Sensor) -> TrackFile
     """
     table = _read(key, path, name)
     clock, pixels = _columns(table)
-    _one_particle(table)
+    _one_particle(table, pixels or ())
     time = _times(table, clock, sensor)
     channels = {column: table.numbers(column, _LOST, lost=True) for column in CHANNELS if column in table.cells}
     if pixels is not None:
@@ -153,7 +153,7 @@ def _read(key: str, path: Path, name: str) -> _Table:
     for i in kept:
         column, entries = header[i], [row[i] for _, row in rows[1:]]
         # What trackpy filters has its frames twice: as the index, and as a column.
-        if column in cells and (column != "frame" or entries != cells[column]):
+        if column in cells and (column != "frame" or _values(entries) != _values(cells[column])):
             expected = "each column once" if column != "frame" else "the same frames in both"
             raise InputError(key, f"{name} with two columns {show(column)}", expected)
         cells[column] = entries
@@ -211,7 +211,25 @@ def _columns(table: _Table) -> tuple[str, tuple[str, str] | None]:
     return clocks[0], pairs[0] if pairs else None
 
 
-def _one_particle(table: _Table) -> None:
-    particles = sorted({cell for cell in table.cells.get("particle", []) if cell})
+def _one_particle(table: _Table, pixels: tuple[str, ...]) -> None:
+    cells = table.cells.get("particle", [])
+    measured = [table.cells[column] for column in (*pixels, *CHANNELS) if column in table.cells]
+    # Where a frame was lost there may be no particle, but nothing is seen of none beside one.
+    counted = [cell for row, cell in enumerate(cells) if cell or any(column[row] for column in measured)]
+    particles = dict(zip(_values(counted), counted, strict=True))
     if len(particles) > 1:
-        raise InputError(table.key, f"{table.name} with the particles {show(particles)}", "the rows of a single one")
+        found = f"{table.name} with the particles {show(sorted(particles.values()))}"
+        raise InputError(table.key, found, "the rows of a single one")
+
+
+def _values(cells: list[str]) -> list[float | str]:
+    """Return what cells say, so that two ways to write a number are one."""
+    return [_value(cell) for cell in cells]
+
+
+def _value(cell: str) -> float | str:
+    try:
+        value = decimal(cell)
+    except ValueError:
+        return cell
+    return value if isfinite(value) else cell
