@@ -5,7 +5,7 @@ from __future__ import annotations
 from os import PathLike, fspath
 from typing import Self
 
-__all__ = ["EffectError", "InputError", "SimulationError", "TumblersError", "show", "unreadable"]
+__all__ = ["EffectError", "InputError", "SimulationError", "TumblersError", "shorten", "show", "unreadable"]
 
 _LONGEST = 80
 
@@ -17,6 +17,11 @@ def show(value: object) -> str:
     except (RecursionError, ValueError):
         # Tables nested too deeply, and integers of more digits than Python writes.
         return f"a value of type {type(value).__name__} that is too long to show"
+    return shorten(text)
+
+
+def shorten(text: str) -> str:
+    """Return a text, its end left out where it is too long for a line."""
     return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
 
 

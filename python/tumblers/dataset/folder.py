@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from ..check import text
-from ..errors import InputError, show, unreadable
+from ..errors import InputError, shorten, show, unreadable
 from ..field import Field, field_from_table, in_its_csv
 from ..model import Model
 from ..regular_file import read_regular
@@ -145,11 +145,13 @@ def _field(value: object, directory: Path) -> Field:
 
 def _track(value: object, directory: Path, sensor: Sensor) -> TrackFile:
     path = _inside("track", text("track", value, "a path"), directory)
-    return read_track_csv("track", path, repr(str(value))[1:-1], sensor)
+    return read_track_csv("track", path, shorten(repr(value)[1:-1]), sensor)
 
 
 def _inside(key: str | None, name: object, directory: Path) -> Path:
     """Return the path of a file in the dataset's folder, or refuse one that is elsewhere."""
+    if name == "":
+        raise InputError(key, show(name), "a path that starts at the dataset's folder")
     path = Path(str(name))
     if path.is_absolute():
         raise InputError(key, show(name), "a path that starts at the dataset's folder")
