@@ -153,6 +153,14 @@ def test_the_sound_one_loads_also_with_windows_lines(folder: Path) -> None:
         data.trial("f06")
 
 
+def test_a_track_belongs_to_one_trial(folder: Path) -> None:
+    second = 'track = "tracks/../tracks/f05.csv"\n'
+    (folder / "dataset.toml").write_text(TEXT.replace("outcome =", f"{second}outcome ="))
+    line = r"trial\[1\]\.track: found 'tracks/\.\./tracks/f05\.csv' again, expected another file than trial\[0\]$"
+    with pytest.raises(InputError, match=line):
+        dataset.load(folder)
+
+
 def test_outcomes_alone_need_no_sensor(folder: Path) -> None:
     start, end = TEXT.index("[sensor]"), TEXT.index('[[trial]]\nid = "slope"')
     (folder / "dataset.toml").write_text(TEXT[:start] + TEXT[end:])

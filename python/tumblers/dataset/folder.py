@@ -78,7 +78,8 @@ def _dataset(contents: str, directory: Path) -> Dataset:
     model = read_section(Model, "model", table.get("model", {}))
     stated = require_table("sensor", table.get("sensor", {}))
     sensor = read_section(Sensor, "sensor", {**_TYPICAL, **stated})
-    trials = tuple(_trial(i, entry, directory, sensor) for i, entry in enumerate(table["trial"]))
+    taken: dict[Path, str] = {}
+    trials = tuple(_trial(i, entry, directory, sensor, taken) for i, entry in enumerate(table["trial"]))
     for i, trial in enumerate(trials):
         if trial.track is not None:
             _noise_is_stated(stated, i, trial.track)
@@ -103,7 +104,8 @@ def _noise_is_stated(stated: Mapping[str, object], i: int, track: Track) -> None
             raise InputError(f"sensor.{keys[-1]}", "no such key", f"the noise of {channel} in trial[{i}].track")
 
 
-def _trial(i: int, value: object, directory: Path, sensor: Sensor) -> LabTrial:
+def _trial(i: int, value: object, directory: Path, sensor: Sensor, taken: dict[Path, str]) -> LabTrial:
+    """Return a trial, and note the file of its track among those that are `taken`, with the trial's key."""
     key = f"trial[{i}]"
     table = dict(require_table(key, value))
     names = [f.name for f in fields(LabTrial)]
@@ -114,7 +116,7 @@ def _trial(i: int, value: object, directory: Path, sensor: Sensor) -> LabTrial:
 
     try:
         field = _field(table["field"], directory)
-        file = read("track", lambda entry: _track(entry, directory, sensor))
+        file = read("track", lambda entry: _track(entry, directory, sensor, taken, key))
         made = {
             "field": field,
             "track": None if file is None else file.track,
@@ -143,8 +145,12 @@ def _field(value: object, directory: Path) -> Field:
     return field_from_table(table, directory)
 
 
-def _track(value: object, directory: Path, sensor: Sensor) -> TrackFile:
+def _track(value: object, directory: Path, sensor: Sensor, taken: dict[Path, str], trial: str) -> TrackFile:
     path = _inside("track", text("track", value, "a path"), directory)
+    # The same measurement would count twice, and foretell itself where one of them is held out.
+    if path in taken:
+        raise InputError("track", f"{show(value)} again", f"another file than {taken[path]}")
+    taken[path] = trial
     return read_track_csv("track", path, shorten(repr(value)[1:-1]), sensor)
 
 
