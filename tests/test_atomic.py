@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tumblers.atomic import is_unfinished, write_files
+from tumblers.atomic import is_unfinished, try_to_write, write_files
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="there a process is not asked after: what it left stays")
 
@@ -95,3 +95,14 @@ def test_a_folder_in_the_way_of_one_leaves_the_others_as_they_were(tmp_path: Pat
         write_files({tmp_path / "one.nc": b"after", tmp_path / "two.nc": b"after"})
     assert (tmp_path / "one.nc").read_bytes() == b"before"
     assert names(tmp_path) == {"one.nc", "two.nc"}
+
+
+def test_what_is_tried_leaves_nothing(tmp_path: Path) -> None:
+    (tmp_path / "one.nc").write_bytes(b"whole")
+    try_to_write(tmp_path / "one.nc")
+    with pytest.raises(OSError, match="too long"):
+        try_to_write(tmp_path / ("n" * 240))
+    with pytest.raises(FileNotFoundError):
+        try_to_write(tmp_path / "gone" / "one.nc")
+    assert names(tmp_path) == {"one.nc"}
+    assert (tmp_path / "one.nc").read_bytes() == b"whole"

@@ -106,6 +106,14 @@ def test_presets_are_listed_and_printed(tmp_path: Path) -> None:
         (["simulate", "nowhere.toml", "--out", "run.nc"], "nowhere.toml: found no such file"),
         (["simulate", "scenario.toml", "--out", "nowhere/run.nc"], "nowhere"),
         (["simulate", "scenario.toml", "--out", "run.txt"], ".nc"),
+        (
+            ["simulate", "scenario.toml", "--out", f"{'r' * 240}.nc"],
+            "...: file name too long, expected a file that can be",
+        ),
+        (
+            ["simulate", "scenario.toml", "--out", "/proc/run.nc"],
+            "--out: found '/proc/run.nc'",
+        ),
         (["simulate", "", "--out", "run.nc"], "'SCENARIO.toml': found '', expected a path"),
         (["simulate", "scenario.toml", "--out", "run.nc", "--plot", ""], "'--plot': found '', expected a path"),
         (["simulate", "scenario.toml", "--out", "scenario.toml"], "--out"),

@@ -12,7 +12,7 @@ from platform import node
 from uuid import uuid4
 from zlib import crc32
 
-__all__ = ["is_unfinished", "write_files"]
+__all__ = ["is_unfinished", "try_to_write", "write_files"]
 
 # Behind the file's name: the machine and the process that write it, and a number of its own.
 _UNFINISHED = re.compile(r"\.(.+)\.([0-9a-f]{8})([0-9a-f]{8})[0-9a-f]{16}\.tmp")
@@ -45,6 +45,26 @@ def write_files(contents: Mapping[Path, bytes | memoryview]) -> None:
             temporary.write_bytes(contents[path])
         for path, temporary in temporaries.items():
             os.replace(temporary, path)
+
+
+def try_to_write(path: Path) -> None:
+    """Begin a file as `write_files` does, under another name, and leave nothing of it.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Raises
+    ------
+    OSError
+        A folder that is missing or cannot be written to, or a name that is too long.
+    """
+    temporary = _unfinished(path)
+    try:
+        temporary.touch(exist_ok=False)
+    finally:
+        temporary.unlink(missing_ok=True)
 
 
 def is_unfinished(path: Path) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from os import PathLike, fspath
 from typing import Self
 
-__all__ = ["EffectError", "InputError", "SimulationError", "TumblersError", "shorten", "show", "unreadable"]
+__all__ = ["EffectError", "InputError", "SimulationError", "TumblersError", "reason", "shorten", "show", "unreadable"]
 
 _LONGEST = 80
 
@@ -25,6 +25,11 @@ def shorten(text: str) -> str:
     return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
 
 
+def reason(error: OSError) -> str:
+    """Return what the system says of a failure."""
+    return (error.strerror or "unknown reason").lower()
+
+
 def unreadable(error: OSError | ValueError) -> str:
     """Return why a file could not be read as text."""
     match error:
@@ -33,7 +38,7 @@ def unreadable(error: OSError | ValueError) -> str:
         case IsADirectoryError():
             return "a directory"
         case OSError():
-            return f"a file that cannot be read ({(error.strerror or 'unknown reason').lower()})"
+            return f"a file that cannot be read ({reason(error)})"
         case UnicodeDecodeError():
             return "bytes that are no UTF-8 text"
     return "a path with a NUL byte"

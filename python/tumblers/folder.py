@@ -6,7 +6,8 @@ import os
 from collections.abc import Iterable
 from pathlib import Path
 
-from .errors import InputError
+from .atomic import try_to_write
+from .errors import InputError, reason, show
 
 __all__ = ["output_folder"]
 
@@ -28,6 +29,14 @@ def output_folder(option: str, folder: Path, names: Iterable[str]) -> None:
     InputError
         A file, a folder that can be neither made nor written to, or one that has folders by the files' names.
     """
+    try:
+        _check(option, folder, names)
+        _try(folder)
+    except OSError as error:
+        raise InputError(option, f"{show(str(folder))}: {reason(error)}", "a folder that can be written to") from None
+
+
+def _check(option: str, folder: Path, names: Iterable[str]) -> None:
     if folder.exists() and not folder.is_dir():
         raise InputError(option, f"the file '{folder}'", "a folder")
     if folder.is_symlink() and not folder.exists():
@@ -41,3 +50,15 @@ def output_folder(option: str, folder: Path, names: Iterable[str]) -> None:
     for name in names:
         if (folder / name).is_dir():
             raise InputError(option, f"the folder '{folder / name}'", f"a folder in which {name} can be written")
+
+
+def _try(folder: Path) -> None:
+    """Write into a folder and leave it as it was: what it allows does not say whether its file system does."""
+    new = not folder.exists()
+    if new:
+        folder.mkdir()
+    try:
+        try_to_write(folder / "part")
+    finally:
+        if new:
+            folder.rmdir()

@@ -12,8 +12,9 @@ from typing import Annotated, Any
 
 import typer
 
+from .atomic import try_to_write
 from .check import number
-from .errors import InputError
+from .errors import InputError, reason, show
 
 __all__ = [
     "PLOT_SUFFIXES",
@@ -115,6 +116,14 @@ def output_file(option: str, path: Path, suffixes: Sequence[str], taken: Sequenc
     """Refuse a file that could not be written in the end, before anything is computed."""
     if path.suffix.lower() not in suffixes:
         raise InputError(option, f"'{path}'", f"a file name that ends in {' or '.join(suffixes)}")
+    try:
+        _check_file(option, path, taken)
+        try_to_write(path)
+    except OSError as error:
+        raise InputError(option, f"{show(str(path))}: {reason(error)}", "a file that can be written") from None
+
+
+def _check_file(option: str, path: Path, taken: Sequence[Path]) -> None:
     if path.is_dir():
         raise InputError(option, f"the folder '{path}'", "a file")
     if not path.parent.is_dir():

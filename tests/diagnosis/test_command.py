@@ -55,6 +55,11 @@ def tumble(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
         (["data", "--out", "foreign"], "--out: found 'foreign/diagnosis.json', of no diagnosis"),
         (["data", "--out", ""], "'--out': found '', expected a path"),
         (["", "--out", "out"], "'DATASET': found '', expected a path"),
+        (
+            ["data", "--out", "o" * 300],
+            f"--out: found '{'o' * 76}...: file name too long, expected a folder that can be",
+        ),
+        (["data", "--out", "/proc/out"], "--out: found '/proc/out'"),
         (["data", "--out", "deep"], "--out: found 'deep/diagnosis.json', of no diagnosis"),
         (["data", "--out", "pipe"], "--out: found 'pipe/diagnosis.json', of no diagnosis"),
         (["data", "--out", "dangling"], "--out: found the link 'dangling' to nothing"),
