@@ -209,6 +209,14 @@ def test_a_frame_is_one_of_the_stated_rate_where_rows_leave_some_out(folder: Pat
             dataset.load(folder)
 
 
+def test_a_row_may_be_half_a_frame_outside_whatever_floats_make_of_it(folder: Path) -> None:
+    # 2.03 + 0.01 is less than 102 / 50.
+    (folder / "tracks" / "f05.csv").write_text("frame,x_m\n0,0\n102,0\n")
+    text = TEXT.replace("[sensor]", "[sensor]\nframes_per_second = 50").replace("duration_s = 2.0", "duration_s = 2.03")
+    (folder / "dataset.toml").write_text(text)
+    assert dataset.load(folder).trials[0].track is not None
+
+
 def test_a_frame_outside_its_trial_is_named_as_in_the_file(folder: Path) -> None:
     (folder / "tracks" / "f05.csv").write_text("frame,x_m\n0,0\n50,0\n99.0,0\n")
     (folder / "dataset.toml").write_text(TEXT.replace("[sensor]", "[sensor]\nframes_per_second = 25"))

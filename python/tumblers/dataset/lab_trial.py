@@ -24,6 +24,8 @@ __all__ = ["LabTrial"]
 # A clock that is off by half a frame moves the first frame before the start and the last one beyond the end; this much
 # is never too much.
 _SLACK_S = 5e-3
+# By which a row that is half a frame outside as decimals have it may be farther as floats do.
+_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -111,7 +113,7 @@ class LabTrial:
         slack = max(_SLACK_S, sensor.time_offset_s or 0.0, HALF_A_FRAME * frame)
         for row in (0, self.track.time_s.size - 1):
             time = float(self.track.time_s[row])
-            if not -slack <= time <= self.duration_s + slack:
+            if max(-time, time - self.duration_s) > slack * (1.0 + _ROUNDING):
                 expected = f"times from 0 s to duration_s, {self.duration_s:g} s, give or take {1e3 * slack:.3g} ms"
                 raise InputError(key, f"a row at {time:g} s" if time_of is None else time_of(row), expected)
 
