@@ -59,7 +59,8 @@ class Sensor:
     origin_tolerance_m, heading_tolerance_deg, scale_tolerance
         How far the track's origin (m), heading (degrees) and scale (a fraction) may be off.
     tracked_point
-        What the positions are of: ``body_centre``, the centre of the body's shape, or ``centre_of_mass``.
+        What the positions are of: ``body_centre``, the centre of the body's shape, or ``centre_of_mass``. If None, a
+        diagnosis takes the shape's centre, unless the other makes the data clearly likelier.
 
     Raises
     ------
@@ -78,7 +79,7 @@ class Sensor:
     origin_tolerance_m: float = 50e-6
     heading_tolerance_deg: float = 2.0
     scale_tolerance: float = 0.005
-    tracked_point: TrackedPoint = "body_centre"
+    tracked_point: TrackedPoint | None = None
 
     def __post_init__(self) -> None:
         def put(name: str, value: object) -> None:
@@ -100,7 +101,8 @@ class Sensor:
         if self.origin_px is not None:
             put("origin_px", pair("sensor.origin_px", self.origin_px, most=MOST_PX))
         put("y_axis_px", _direction("sensor.y_axis_px", self.y_axis_px))
-        choice("sensor.tracked_point", self.tracked_point, get_args(TrackedPoint))
+        if self.tracked_point is not None:
+            choice("sensor.tracked_point", self.tracked_point, get_args(TrackedPoint))
 
     @property
     def x_axis_px(self) -> Pixel:

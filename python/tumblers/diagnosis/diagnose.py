@@ -35,6 +35,7 @@ from .posterior import samples
 from .predictive import is_right
 from .result import EffectEstimate, HeatMap, Interval, NextTrial, RankedHypothesis, Region, TrialFloor, Verdict
 from .simulator import Job, Simulator
+from .tracked_point import with_tracked_point
 from .verdict import judge, refused, ties
 from .wrench import missing_wrench, wrench_regions
 
@@ -100,9 +101,9 @@ def diagnose(
     start = perf_counter()
     # The sums of the linear algebra depend on its threads, and what follows from them would.
     with threadpool_limits(1), phases(progress) as tell:
+        read = with_tracked_point(dataset, kinds, jobs or 0, tell)
         tell("simulating the nominal model", 0, 1)
-        simulator = Simulator(dataset, jobs or 0)
-        comparison = Comparison(dataset, simulator)
+        comparison = Comparison(read, Simulator(read, jobs or 0))
         if comparison.count == 0:
             raise InputError(
                 "trial",
@@ -111,12 +112,15 @@ def diagnose(
                 dataset.directory,
             )
         attribution = attribute(comparison, kinds, tell, seed)
-        return _Conclusion(comparison, attribution, seed, tell).diagnosis(start)
+        return _Conclusion(dataset, comparison, attribution, seed, tell).diagnosis(start)
 
 
 class _Conclusion:
-    def __init__(self, comparison: Comparison, attribution: Attribution, seed: int, tell: OnPhase) -> None:
-        self.comparison, self.attribution, self.seed, self.tell = comparison, attribution, seed, tell
+    def __init__(
+        self, dataset: Dataset, comparison: Comparison, attribution: Attribution, seed: int, tell: OnPhase
+    ) -> None:
+        self.dataset, self.comparison, self.attribution = dataset, comparison, attribution
+        self.seed, self.tell = seed, tell
         self.fitter = Fitter(comparison)
         self.measured: dict[tuple[str, ...], HeldOut] = {}
 
@@ -159,7 +163,6 @@ class _Conclusion:
     def diagnosis(self, start: float) -> Diagnosis:
         self.lead_by_what_stands()
         comparison, attribution, tell = self.comparison, self.attribution, self.tell
-        dataset = comparison.dataset
         nominal = self.held_out(attribution.nominal)
         best = attribution.contenders[0]
         gap = shrink(self.fitter, self.held_out(best), self.seed)
@@ -187,7 +190,7 @@ class _Conclusion:
         else:
             regions = ()
         return Diagnosis(
-            dataset=dataset,
+            dataset=self.dataset,
             model=comparison.simulator.model,
             verdict=verdict,
             effects=estimates,
@@ -201,7 +204,7 @@ class _Conclusion:
             missing_wrench=wrench,
             overlays=shown,
             floors=floors,
-            assumptions=_assumptions(comparison, attribution),
+            assumptions=_assumptions(self.dataset, comparison, attribution),
             seed=self.seed,
             seconds=perf_counter() - start,
             version=__version__,
@@ -327,7 +330,7 @@ def _weight(dispersion: float) -> str:
     )
 
 
-def _assumptions(comparison: Comparison, attribution: Attribution) -> tuple[str, ...]:
+def _assumptions(dataset: Dataset, comparison: Comparison, attribution: Attribution) -> tuple[str, ...]:
     simulator, sensor = comparison.simulator, comparison.dataset.sensor
     tried = sorted(c.names[0] for c in attribution.contenders if len(c.names) == 1)
     clock = "half a frame" if sensor.time_offset_s is None else f"{1e3 * sensor.time_offset_s:g} ms"
@@ -364,6 +367,14 @@ def _assumptions(comparison: Comparison, attribution: Attribution) -> tuple[str,
         "Evidence is Laplace's approximation; intervals are 90 % likelihood ratios along the ridge of the posterior, "
         "and what multiplies a nominal number, or adds to a nominal force, is known no better than that.",
     ]
+    if dataset.sensor.tracked_point is None:
+        said.append(
+            "Positions are taken to be of the body's centre of mass: the sensor does not say, and so they are clearly "
+            "likelier than of the centre of its shape."
+            if sensor.tracked_point == "centre_of_mass"
+            else "Positions are taken to be of the centre of the body's shape: the sensor does not say, and of the "
+            "centre of mass they are not clearly likelier."
+        )
     if attribution.refused:
         names = ", ".join(" + ".join(effects) for effects in attribution.refused)
         said.append(

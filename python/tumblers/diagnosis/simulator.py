@@ -322,7 +322,7 @@ class Simulator:
 
     def _tracked(self, scenario: Scenario) -> Floats:
         """Return the body-fixed place of the tracked point, from the centre of mass, m, shape (3,)."""
-        if self.dataset.sensor.tracked_point != "body_centre":
+        if self.dataset.sensor.tracked_point == "centre_of_mass":
             return np.zeros(3)
         return -np.array(scenario.robot.center_of_mass_m)
 

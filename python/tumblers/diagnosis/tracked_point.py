@@ -1,0 +1,75 @@
+"""`with_tracked_point`: which point of the body the positions are of, where the sensor does not say.
+
+A camera follows the body's shape, a computed track often the centre of mass. The two part where the mass is not at the
+centre of the shape, and such an offset would be taken for something else by the wrong reading: it is fitted in both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import get_args
+
+import numpy as np
+
+from ..dataset import Dataset
+from ..dataset.sensor import TrackedPoint
+from ..effects.base import Effect
+from ..effects.center_of_mass_offset import CenterOfMassOffset
+from ..progress import OnPhase
+from .comparison import Comparison
+from .contender import of_nominal
+from .fitter import Fitter
+from .hypothesis import Hypothesis
+from .own_noise import against_itself
+from .simulator import Simulator
+from .thresholds import CLEAR
+
+__all__ = ["with_tracked_point"]
+
+_PLACES = frozenset({"x_m", "y_m", "z_m"})
+# Trial points of the fit.
+_POINTS = 8
+
+
+def with_tracked_point(dataset: Dataset, kinds: Sequence[type[Effect]], jobs: int, tell: OnPhase) -> Dataset:
+    """Return a dataset whose sensor says which point was tracked: the shape's centre, if the other is not likelier.
+
+    Parameters
+    ----------
+    dataset
+        What the lab measured.
+    kinds
+        The effects that are considered.
+    jobs
+        Threads, all if 0.
+    tell
+        Is told the phase, how much of it is done, and of how much.
+    """
+    if dataset.sensor.tracked_point is not None:
+        return dataset
+    points: tuple[TrackedPoint, ...] = get_args(TrackedPoint)
+    readings = [replace(dataset, sensor=replace(dataset.sensor, tracked_point=point)) for point in points]
+    tracks = [trial.track for trial in dataset.trials if trial.track is not None and trial.track.frames]
+    placed = any(not _PLACES.isdisjoint(track.channels) for track in tracks)
+    if not placed or not (CenterOfMassOffset in kinds or any(dataset.robot.center_of_mass_m)):
+        return readings[0]
+    totals = []
+    for k, reading in enumerate(readings):
+        tell("which point was tracked", k, len(readings))
+        totals.append(_total(reading, [kind for kind in kinds if kind is CenterOfMassOffset], jobs))
+    return readings[1 if totals[1] < totals[0] - CLEAR else 0]
+
+
+def _total(dataset: Dataset, kinds: Sequence[type[Effect]], jobs: int) -> float:
+    """Return the least total of the nominal model and of some effects."""
+    fitter = Fitter(Comparison(dataset, Simulator(dataset, jobs)))
+    fitter.take_likeliest_noise(())
+    nominal = of_nominal(fitter)
+    totals = [nominal.total]
+    scenarios = [fitter.comparison.simulator.nominal(i) for i in fitter.trials]
+    for hypothesis in (Hypothesis.of(kind, scenarios) for kind in kinds):
+        fitter.take_likeliest_noise(())
+        ((_, start), *_), *_ = fitter.scan([hypothesis], [np.zeros(len(hypothesis.neutral))], nominal.residual)
+        totals.append(against_itself(fitter, fitter.fit(hypothesis, start, evaluations=_POINTS)).total)
+    return min(totals)
