@@ -98,7 +98,7 @@ SENSOR = st.builds(
     origin_tolerance_m=LEAST,
     heading_tolerance_deg=LEAST,
     scale_tolerance=LEAST,
-    tracked_point=st.sampled_from(["body_centre", "centre_of_mass"]),
+    tracked_point=st.sampled_from([None, "body_centre", "centre_of_mass"]),
 )
 DATASET = st.builds(
     Dataset,

@@ -29,9 +29,10 @@ def output_folder(option: str, folder: Path, names: Iterable[str]) -> None:
     InputError
         A file, a folder that can be neither made nor written to, or one that has folders by the files' names.
     """
+    written = tuple(names)
     try:
-        _check(option, folder, names)
-        _try(folder)
+        _check(option, folder, written)
+        _try(folder, written[0])
     except OSError as error:
         raise InputError(option, f"{show(str(folder))}: {reason(error)}", "a folder that can be written to") from None
 
@@ -52,13 +53,14 @@ def _check(option: str, folder: Path, names: Iterable[str]) -> None:
             raise InputError(option, f"the folder '{folder / name}'", f"a folder in which {name} can be written")
 
 
-def _try(folder: Path) -> None:
-    """Write into a folder and leave it as it was: what it allows does not say whether its file system does."""
+def _try(folder: Path, name: str) -> None:
+    """Begin a file in a folder and leave it as it was: what it allows does not say whether its file system does."""
     new = not folder.exists()
     if new:
         folder.mkdir()
     try:
-        try_to_write(folder / "part")
+        # Under a name that is written later, which removes what a kill left of it.
+        try_to_write(folder / name)
     finally:
         if new:
             folder.rmdir()

@@ -369,11 +369,10 @@ def _assumptions(dataset: Dataset, comparison: Comparison, attribution: Attribut
     ]
     if dataset.sensor.tracked_point is None:
         said.append(
-            "Positions are taken to be of the body's centre of mass: the sensor does not say, and so they are clearly "
-            "likelier than of the centre of its shape."
+            "Positions are taken to be of the body's centre of mass: the sensor does not say, and so an offset of the "
+            "mass explains them alone, and clearly better than if they are of the centre of the shape."
             if sensor.tracked_point == "centre_of_mass"
-            else "Positions are taken to be of the centre of the body's shape: the sensor does not say, and of the "
-            "centre of mass they are not clearly likelier."
+            else "Positions are taken to be of the centre of the body's shape, for the sensor does not say."
         )
     if attribution.refused:
         names = ", ".join(" + ".join(effects) for effects in attribution.refused)

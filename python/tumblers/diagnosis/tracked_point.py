@@ -2,6 +2,7 @@
 
 A camera follows the body's shape, a computed track often the centre of mass. The two part where the mass is not at the
 centre of the shape, and such an offset would be taken for something else by the wrong reading: it is fitted in both.
+Of another cause it follows either as badly, or by chance one better: what leaves a gap speaks for neither.
 """
 
 from __future__ import annotations
@@ -18,10 +19,11 @@ from ..effects.base import Effect
 from ..effects.center_of_mass_offset import CenterOfMassOffset
 from ..progress import OnPhase
 from .comparison import Comparison
-from .contender import of_nominal
+from .contender import likeliest, of_nominal
 from .fitter import Fitter
 from .hypothesis import Hypothesis
 from .own_noise import against_itself
+from .predictive import is_wanting
 from .simulator import Simulator
 from .thresholds import CLEAR
 
@@ -33,7 +35,10 @@ _POINTS = 8
 
 
 def with_tracked_point(dataset: Dataset, kinds: Sequence[type[Effect]], jobs: int, tell: OnPhase) -> Dataset:
-    """Return a dataset whose sensor says which point was tracked: the shape's centre, if the other is not likelier.
+    """Return a dataset whose sensor says which point was tracked.
+
+    The centre of mass where the nominal model or an offset alone then leaves no gap and is clearly likelier than either
+    by the shape's centre; else that.
 
     Parameters
     ----------
@@ -54,22 +59,25 @@ def with_tracked_point(dataset: Dataset, kinds: Sequence[type[Effect]], jobs: in
     placed = any(not _PLACES.isdisjoint(track.channels) for track in tracks)
     if not placed or not (CenterOfMassOffset in kinds or any(dataset.robot.center_of_mass_m)):
         return readings[0]
-    totals = []
+    offset = [kind for kind in kinds if kind is CenterOfMassOffset]
+    found = []
     for k, reading in enumerate(readings):
         tell("which point was tracked", k, len(readings))
-        totals.append(_total(reading, [kind for kind in kinds if kind is CenterOfMassOffset], jobs))
-    return readings[1 if totals[1] < totals[0] - CLEAR else 0]
+        found.append(_likeliest(reading, offset, jobs))
+    (shape, _), (mass, wanting) = found
+    return readings[1 if mass < shape - CLEAR and not wanting else 0]
 
 
-def _total(dataset: Dataset, kinds: Sequence[type[Effect]], jobs: int) -> float:
-    """Return the least total of the nominal model and of some effects."""
+def _likeliest(dataset: Dataset, kinds: Sequence[type[Effect]], jobs: int) -> tuple[float, bool]:
+    """Return the least total of the nominal model and of some effects, and whether that leaves a gap."""
     fitter = Fitter(Comparison(dataset, Simulator(dataset, jobs)))
     fitter.take_likeliest_noise(())
     nominal = of_nominal(fitter)
-    totals = [nominal.total]
+    made = [nominal]
     scenarios = [fitter.comparison.simulator.nominal(i) for i in fitter.trials]
     for hypothesis in (Hypothesis.of(kind, scenarios) for kind in kinds):
         fitter.take_likeliest_noise(())
         ((_, start), *_), *_ = fitter.scan([hypothesis], [np.zeros(len(hypothesis.neutral))], nominal.residual)
-        totals.append(against_itself(fitter, fitter.fit(hypothesis, start, evaluations=_POINTS)).total)
-    return min(totals)
+        made.append(against_itself(fitter, fitter.fit(hypothesis, start, evaluations=_POINTS)))
+    best = likeliest(made)
+    return best.total, is_wanting(fitter.comparison, best.residual)
