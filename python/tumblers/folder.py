@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from .atomic import try_to_write
@@ -12,7 +12,7 @@ from .errors import InputError, reason, show
 __all__ = ["output_folder"]
 
 
-def output_folder(option: str, folder: Path, names: Iterable[str]) -> None:
+def output_folder(option: str, folder: Path, names: Sequence[str]) -> None:
     """Refuse a folder that could not be written to in the end, before anything is computed.
 
     Parameters
@@ -22,17 +22,16 @@ def output_folder(option: str, folder: Path, names: Iterable[str]) -> None:
     folder
         Where the files go; made later if missing.
     names
-        The files' names.
+        The files' names, one at least.
 
     Raises
     ------
     InputError
         A file, a folder that can be neither made nor written to, or one that has folders by the files' names.
     """
-    written = tuple(names)
     try:
-        _check(option, folder, written)
-        _try(folder, written[0])
+        _check(option, folder, names)
+        _try(folder, names[0])
     except OSError as error:
         raise InputError(option, f"{show(str(folder))}: {reason(error)}", "a folder that can be written to") from None
 

@@ -19,12 +19,12 @@ from .same_settings import same_settings
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Parts", "numbers_of", "parts_beside"]
+__all__ = ["SETTINGS", "Parts", "numbers_of", "parts_beside"]
 
 T = TypeVar("T")
 
 # The settings are the last file that goes: under another name they say that the rest is no longer wanted.
-_SETTINGS, _ENDED = "settings.json", "ended.json"
+SETTINGS, _ENDED = "settings.json", "ended.json"
 _SUFFIXES = (".json", ".nc")
 _FOLDER = "a folder of these results, or none"
 _EXPECTED = "a part of these results, or no such file: it is computed again"
@@ -56,7 +56,7 @@ class Parts:
             return False
         if not self.folder.is_dir():
             raise InputError("parts", f"the file {self.folder}", _FOLDER)
-        file, ended = self.folder / _SETTINGS, self.folder / _ENDED
+        file, ended = self.folder / SETTINGS, self.folder / _ENDED
         over = ended.exists() and not file.exists()
         # A folder that was made by a call that was killed before its first file is as good as none.
         if not over and not file.exists() and all(entry.name.startswith(".") for entry in self.folder.iterdir()):
@@ -70,7 +70,7 @@ class Parts:
         assert self.folder is not None
         self.folder.mkdir(exist_ok=True)
         try:
-            write_files({self.folder / _SETTINGS: _json_bytes(self.settings)})
+            write_files({self.folder / SETTINGS: _json_bytes(self.settings)})
         except BaseException:
             with suppress(OSError):
                 self.folder.rmdir()
@@ -80,7 +80,7 @@ class Parts:
         """Return the parts that the folder holds, if it is of these results."""
         assert self.folder is not None
         kept = (entry for entry in self.folder.iterdir() if entry.suffix in _SUFFIXES and entry.name[0] != ".")
-        return [entry for entry in kept if entry.name not in (_SETTINGS, _ENDED) and entry.is_file()]
+        return [entry for entry in kept if entry.name not in (SETTINGS, _ENDED) and entry.is_file()]
 
     def holds(self, name: str) -> bool:
         """Return whether a part of `part` is there already.
@@ -177,7 +177,7 @@ class Parts:
         # Who began other results there meanwhile keeps them; who ended the same ones has removed them.
         with suppress(InputError, FileNotFoundError):
             if self.folder is not None and self._begun():
-                os.replace(self.folder / _SETTINGS, self.folder / _ENDED)
+                os.replace(self.folder / SETTINGS, self.folder / _ENDED)
                 self._clear()
 
     def _clear(self) -> None:

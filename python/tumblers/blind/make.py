@@ -19,7 +19,7 @@ from ..check import thread_count
 from ..dataset import Dataset
 from ..errors import InputError, show
 from ..folder import output_folder
-from ..parts import Parts
+from ..parts import SETTINGS, Parts
 from ..progress import OnProgress, native_call
 from ..version import __version__
 from .answer import Answer, seal
@@ -80,7 +80,7 @@ def make(
     directory = Path(directory)
     output_folder("out", directory, [ANSWERS])
     if parts is not None:
-        output_folder("parts", Path(parts), [])
+        output_folder("parts", Path(parts), [SETTINGS])
     kept = Parts(None if parts is None else Path(parts), make_settings(seed, count))
     names = [f"dataset-{index:03d}" for index in range(count)]
     # Some are there already only where a call was killed while it wrote them, after all were drawn.
