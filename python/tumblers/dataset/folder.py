@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields
 from os import PathLike
 from pathlib import Path
@@ -78,8 +78,8 @@ def _dataset(contents: str, directory: Path) -> Dataset:
     model = read_section(Model, "model", table.get("model", {}))
     stated = require_table("sensor", table.get("sensor", {}))
     sensor = read_section(Sensor, "sensor", {**_TYPICAL, **stated})
-    taken: dict[Path, str] = {}
-    trials = tuple(_trial(i, entry, directory, sensor, taken) for i, entry in enumerate(table["trial"]))
+    trials = tuple(_trial(i, entry, directory, sensor) for i, entry in enumerate(table["trial"]))
+    _each_has_its_own_track(table["trial"], directory)
     for i, trial in enumerate(trials):
         if trial.track is not None:
             _noise_is_stated(stated, i, trial.track)
@@ -104,8 +104,18 @@ def _noise_is_stated(stated: Mapping[str, object], i: int, track: Track) -> None
             raise InputError(f"sensor.{keys[-1]}", "no such key", f"the noise of {channel} in trial[{i}].track")
 
 
-def _trial(i: int, value: object, directory: Path, sensor: Sensor, taken: dict[Path, str]) -> LabTrial:
-    """Return a trial, and note the file of its track among those that are `taken`, with the trial's key."""
+def _each_has_its_own_track(entries: Sequence[Mapping[str, str]], directory: Path) -> None:
+    """Refuse one file for two trials: it would count twice, and foretell itself where one of them is held out."""
+    first: dict[Path, int] = {}
+    for i, entry in enumerate(entries):
+        if "track" in entry:
+            before = first.setdefault((directory / entry["track"]).resolve(), i)
+            if before != i:
+                expected = f"another file than trial[{before}]"
+                raise InputError(f"trial[{i}].track", f"{show(entry['track'])} again", expected)
+
+
+def _trial(i: int, value: object, directory: Path, sensor: Sensor) -> LabTrial:
     key = f"trial[{i}]"
     table = dict(require_table(key, value))
     names = [f.name for f in fields(LabTrial)]
@@ -116,7 +126,7 @@ def _trial(i: int, value: object, directory: Path, sensor: Sensor, taken: dict[P
 
     try:
         field = _field(table["field"], directory)
-        file = read("track", lambda entry: _track(entry, directory, sensor, taken, key))
+        file = read("track", lambda entry: _track(entry, directory, sensor))
         made = {
             "field": field,
             "track": None if file is None else file.track,
@@ -145,12 +155,8 @@ def _field(value: object, directory: Path) -> Field:
     return field_from_table(table, directory)
 
 
-def _track(value: object, directory: Path, sensor: Sensor, taken: dict[Path, str], trial: str) -> TrackFile:
+def _track(value: object, directory: Path, sensor: Sensor) -> TrackFile:
     path = _inside("track", text("track", value, "a path"), directory)
-    # The same measurement would count twice, and foretell itself where one of them is held out.
-    if path in taken:
-        raise InputError("track", f"{show(value)} again", f"another file than {taken[path]}")
-    taken[path] = trial
     return read_track_csv("track", path, shorten(repr(value)[1:-1]), sensor)
 
 
