@@ -60,7 +60,8 @@ class Sensor:
         How far the track's origin (m), heading (degrees) and scale (a fraction) may be off.
     tracked_point
         What the positions are of: ``body_centre``, the centre of the body's shape, or ``centre_of_mass``. If None, a
-        diagnosis takes the shape's centre, unless the other makes the data clearly likelier.
+        diagnosis takes the shape's centre, unless by the other an offset of the mass alone explains all and is clearly
+        likelier.
 
     Raises
     ------

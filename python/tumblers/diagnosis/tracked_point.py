@@ -57,9 +57,9 @@ def with_tracked_point(dataset: Dataset, kinds: Sequence[type[Effect]], jobs: in
     readings = [replace(dataset, sensor=replace(dataset.sensor, tracked_point=point)) for point in points]
     tracks = [trial.track for trial in dataset.trials if trial.track is not None and trial.track.frames]
     placed = any(not _PLACES.isdisjoint(track.channels) for track in tracks)
-    if not placed or not (CenterOfMassOffset in kinds or any(dataset.robot.center_of_mass_m)):
+    offset = CenterOfMassOffset in kinds
+    if not placed or not (offset or any(dataset.robot.center_of_mass_m)):
         return readings[0]
-    offset = [kind for kind in kinds if kind is CenterOfMassOffset]
     found = []
     for k, reading in enumerate(readings):
         tell("which point was tracked", k, len(readings))
@@ -68,16 +68,15 @@ def with_tracked_point(dataset: Dataset, kinds: Sequence[type[Effect]], jobs: in
     return readings[1 if mass < shape - CLEAR and not wanting else 0]
 
 
-def _likeliest(dataset: Dataset, kinds: Sequence[type[Effect]], jobs: int) -> tuple[float, bool]:
-    """Return the least total of the nominal model and of some effects, and whether that leaves a gap."""
+def _likeliest(dataset: Dataset, offset: bool, jobs: int) -> tuple[float, bool]:
+    """Return the least total of the nominal model and, where considered, an offset, and whether that leaves a gap."""
     fitter = Fitter(Comparison(dataset, Simulator(dataset, jobs)))
     fitter.take_likeliest_noise(())
-    nominal = of_nominal(fitter)
-    made = [nominal]
-    scenarios = [fitter.comparison.simulator.nominal(i) for i in fitter.trials]
-    for hypothesis in (Hypothesis.of(kind, scenarios) for kind in kinds):
-        fitter.take_likeliest_noise(())
-        ((_, start), *_), *_ = fitter.scan([hypothesis], [np.zeros(len(hypothesis.neutral))], nominal.residual)
-        made.append(against_itself(fitter, fitter.fit(hypothesis, start, evaluations=_POINTS)))
-    best = likeliest(made)
+    best = nominal = of_nominal(fitter)
+    if offset:
+        scenarios = [fitter.comparison.simulator.nominal(i) for i in fitter.trials]
+        hypothesis = Hypothesis.of(CenterOfMassOffset, scenarios)
+        (starts,) = fitter.scan([hypothesis], [np.zeros(len(hypothesis.neutral))], nominal.residual)
+        _, start = starts[0]
+        best = likeliest([nominal, against_itself(fitter, fitter.fit(hypothesis, start, evaluations=_POINTS))])
     return best.total, is_wanting(fitter.comparison, best.residual)
