@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -44,9 +43,6 @@ def _check(option: str, folder: Path, names: Iterable[str]) -> None:
     if not folder.exists() and not folder.parent.is_dir():
         what = "is a file" if folder.parent.exists() else "does not"
         raise InputError(option, f"'{folder}'", f"a folder in one that exists, '{folder.parent}' {what}")
-    written = folder if folder.exists() else folder.parent
-    if not os.access(written, os.W_OK | os.X_OK):
-        raise InputError(option, f"'{folder}'", f"a folder that can be written to, '{written}' cannot")
     for name in names:
         if (folder / name).is_dir():
             raise InputError(option, f"the folder '{folder / name}'", f"a folder in which {name} can be written")

@@ -128,8 +128,6 @@ def _check_file(option: str, path: Path, taken: Sequence[Path]) -> None:
         raise InputError(option, f"the folder '{path}'", "a file")
     if not path.parent.is_dir():
         raise InputError(option, f"'{path}'", f"a file in a folder that exists, '{path.parent}' does not")
-    if not os.access(path.parent, os.W_OK | os.X_OK):
-        raise InputError(option, f"'{path}'", f"a file in a folder that can be written to, '{path.parent}' cannot")
     # `realpath` of a link to itself is no error before something is opened.
     if any(os.path.realpath(path) == os.path.realpath(other) for other in taken):
         raise InputError(option, f"'{path}'", "a file that is not named twice")
