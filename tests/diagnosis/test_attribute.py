@@ -8,13 +8,11 @@ from importlib import import_module
 from types import SimpleNamespace
 from typing import Any
 
-import numpy as np
 import pytest
 
-from tumblers.diagnosis.comparison import Residual
 from tumblers.diagnosis.contender import Contender
 
-from .lab import coarse_lab
+from .lab import NOTHING, coarse_lab
 
 # The package has the function by the module's name.
 attribution = import_module("tumblers.diagnosis.attribute")
@@ -50,8 +48,7 @@ def test_what_leads_once_another_counts_as_the_nominal_model_imposes_its_steps(m
 
 def made(total: float, *names: str, settled: bool = False) -> Contender:
     """Return a contender, of which only its total is known."""
-    none = np.empty(0)
-    return Contender(names, None, Residual((), none, none, none, none), total, settled=settled)
+    return Contender(names, None, NOTHING, total, settled=settled)
 
 
 def test_what_leads_by_the_noise_around_another_is_first_held_against_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -82,7 +79,7 @@ def test_what_leads_by_the_noise_around_another_is_first_held_against_its_own(mo
     found = attribution.attribute(comparison, [])
     assert held == [idle.names]
     assert found.contenders[0].names == pair.names
-    # What leads is not asked again, nor is what nothing is known of.
+    # Nothing is asked where the nominal model leads, nor of what is held against a noise that it is near.
     assert attribution._flattered([made(0.0), idle]) == []
     assert attribution._flattered([idle, pair]) == [idle]
     assert attribution._flattered([replace(idle, lent=True), pair]) == []
