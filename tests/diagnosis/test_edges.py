@@ -16,6 +16,7 @@ from tumblers.dataset import Dataset, LabTrial, Outcome, Track
 from tumblers.diagnosis import Diagnosis, diagnose
 from tumblers.diagnosis.caution import cautions
 from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.localise import localise
 from tumblers.diagnosis.predictive import _worst, is_right
 from tumblers.diagnosis.reading import reached
 from tumblers.diagnosis.simulator import Simulator
@@ -382,3 +383,26 @@ def test_effects_that_are_not_there_are_refused(effects: list[str]) -> None:
 def test_jobs_that_make_no_sense_are_refused(jobs: int) -> None:
     with pytest.raises(InputError, match="jobs"):
         diagnose(plan(PLANS[:1]), jobs=jobs)
+
+
+@pytest.mark.parametrize("count", [3, 6, 12, 24])
+def test_of_few_outcomes_noise_alone_is_seldom_a_gap(count: int) -> None:
+    trial = LabTrial(id="lies", field=OFF, duration_s=0.05, outcome=Outcome(tilt_deg=0.0, sigma_deg=1.0))
+    data = replace(plan(), trials=tuple(replace(trial, id=f"lies{k}") for k in range(count)))
+    comparison = Comparison(data, Simulator(data, 1))
+    still = comparison.residual(comparison.nominal_paths)
+    rng = np.random.default_rng(0)
+    noise = [tuple(rng.normal(size=(count, 1))) for _ in range(1000)]
+    refused = sum(not is_right(comparison, replace(still, trials=values)) for values in noise)
+    # Once in a hundred by all of them, and seldom by one.
+    assert refused <= 30
+    # A tilt that is off by three sigmas in all of them is no noise.
+    assert not is_right(comparison, replace(still, trials=(np.full(1, 3.0),) * count))
+
+
+def test_where_a_climb_was_noted_that_the_model_does_not_make_is_told() -> None:
+    data = _noted("lies", Outcome(climbs=True), still=True)
+    comparison = Comparison(data, Simulator(data, 1))
+    residual = comparison.residual(comparison.nominal_paths)
+    regions, _ = localise(comparison, residual, comparison.nominal_paths)
+    assert [region.value for region in regions if region.axis == "trial"] == ["lies"]

@@ -30,7 +30,9 @@ def compared(*tracked: int, alike: float = 1.0) -> SimpleNamespace:
         SimpleNamespace(tracked=count, size=COUNT, outcome_scale={f"speed{k}": 1.0 for k in range(COUNT - count)})
         for count in tracked
     )
-    made = SimpleNamespace(readers=floors, sizes=(COUNT,) * len(floors), floors=floors, alike=alike)
+    made = SimpleNamespace(
+        readers=floors, sizes=(COUNT,) * len(floors), count=COUNT * len(floors), floors=floors, alike=alike
+    )
     made.rough = Comparison.rough.fget(made)  # type: ignore[attr-defined]
     return made
 

@@ -29,6 +29,7 @@ from .comparison import Comparison, Residual
 from .observed import CHANNELS
 from .onset import begins_at_phase, begins_at_place, begins_at_time
 from .pose import Path
+from .predictive import contradicted
 from .result import HeatMap, Region
 from .wrench_place import lacks_at_place
 
@@ -104,7 +105,7 @@ def localise(
     ids = tuple(trial.id for trial in comparison.dataset.trials)
     axes = _axes(cells)
     total = float(np.sum(np.maximum(_sums(cells.trial, cells.excess, len(ids)), 0.0)))
-    regions = _trials(cells, ids, total)
+    regions = _trials(cells, ids, total, contradicted(comparison, residual))
     if regions:
         found = [begins(comparison, residual, paths) for begins in (begins_at_time, begins_at_place, begins_at_phase)]
         begun = {region.axis: region for region in found if region is not None}
@@ -138,12 +139,13 @@ def _rms(cells: Cells, mask: Mask) -> float:
     return float(np.sqrt(np.mean(cells.loss[mask])))
 
 
-def _trials(cells: Cells, ids: tuple[str, ...], total: float) -> list[Region]:
+def _trials(cells: Cells, ids: tuple[str, ...], total: float, denied: Mask) -> list[Region]:
     regions = []
     for i, name in enumerate(ids):
         mine = cells.trial == i
         track, outcomes = mine & ~cells.outcome, mine & cells.outcome
-        off = any(cells.loss[k] - 1.0 > _SIGNIFICANT for k in np.flatnonzero(outcomes))
+        # Of yes or no the other is said by less than that.
+        off = bool(denied[i]) or any(cells.loss[k] - 1.0 > _SIGNIFICANT for k in np.flatnonzero(outcomes))
         if track.any() and _stands_out(cells, track, cells.loss - 1.0):
             # A channel whose floor is wide does not hide the others.
             excess = [cells.excess[track & (cells.channel == c)].sum() for c in range(len(CHANNELS))]

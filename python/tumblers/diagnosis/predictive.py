@@ -15,10 +15,13 @@ from .comparison import Comparison, Residual
 from .loss import huber, robust_cost
 from .reading import SLID, reached
 
-__all__ = ["is_right", "is_wanting", "mean_square", "mean_squares"]
+__all__ = ["contradicted", "is_right", "is_wanting", "mean_square", "mean_squares"]
 
-# A right model's mean square over all numbers, and in its worst trial.
+# A right model's mean square over all of many numbers, and in its worst trial.
 _EXPLAINED, _WORST = 1.25, 2.0
+# Of fewer than some 200 numbers noise alone leaves more than that; more than what is allowed instead it leaves once in
+# a hundred datasets.
+_SELDOM = 0.01
 # A gap is left where the mean square stays above this against the likeliest noise.
 _WANTING = 1.1
 # Of few numbers noise alone leaves more than so much once in a thousand trials or outcomes: some hundred are looked at.
@@ -40,8 +43,34 @@ def mean_square(comparison: Comparison, residual: Residual) -> float:
 
 def is_right(comparison: Comparison, residual: Residual) -> bool:
     """Whether a hypothesis passes the test."""
-    trials = bool(np.all(mean_squares(residual) <= _worst(np.asarray(comparison.sizes))))
-    return trials and mean_square(comparison, residual) <= _EXPLAINED and _outcomes_agree(comparison, residual)
+    if not np.all(mean_squares(residual) <= _worst(np.asarray(comparison.sizes))):
+        return False
+    count = max(comparison.count, 1)
+    most = max(_EXPLAINED, float(chi2.isf(_SELDOM, count)) / count)
+    return mean_square(comparison, residual) <= most and not contradicted(comparison, residual).any()
+
+
+def contradicted(comparison: Comparison, residual: Residual) -> NDArray[np.bool_]:
+    """Return in which trials a hypothesis says something else than an outcome that was noted, shape (trials,).
+
+    Parameters
+    ----------
+    comparison
+        The dataset.
+    residual
+        How wrong the hypothesis is.
+    """
+    most = float(_worst(np.array(1)))
+    return np.array(
+        [
+            any(
+                loss >= _HOLDS.get(name, most)
+                for name, loss in zip(floor.outcome_scale, huber(values[floor.tracked :]), strict=True)
+            )
+            for values, floor in zip(residual.trials, comparison.floors, strict=True)
+        ],
+        dtype=np.bool_,
+    )
 
 
 def is_wanting(comparison: Comparison, residual: Residual) -> bool:
@@ -53,12 +82,3 @@ def _worst(count: NDArray[np.int_]) -> NDArray[np.float64]:
     """Return the most that a right model leaves of so many numbers: in few, noise alone gives more."""
     n = np.maximum(count, 1)
     return np.asarray(np.maximum(_WORST * (1.0 + 2.0 * np.sqrt(2.0 / n)), chi2.isf(_RARE, n) / n))
-
-
-def _outcomes_agree(comparison: Comparison, residual: Residual) -> bool:
-    most = float(_worst(np.array(1)))
-    return all(
-        loss < _HOLDS.get(name, most)
-        for values, floor in zip(residual.trials, comparison.floors, strict=True)
-        for name, loss in zip(floor.outcome_scale, huber(values[floor.tracked :]), strict=True)
-    )
