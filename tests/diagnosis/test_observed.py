@@ -40,6 +40,19 @@ def test_of_a_robot_that_slides_without_a_field_half_of_its_way_is_compared_and_
     assert observed.lost == 0
 
 
+@pytest.mark.parametrize("frame", [0, 12, 29])
+def test_a_frame_in_which_something_else_was_taken_for_the_robot_is_no_slide(frame: int) -> None:
+    held = seen(OFF, 0.0)
+    (trial,) = held.trials
+    assert trial.track is not None
+    y_m = np.array(trial.track.channels["y_m"])
+    y_m[frame] += 3e-4
+    track = replace(trial.track, channels={**trial.track.channels, "y_m": y_m})
+    (observed,) = observe(replace(held, trials=(replace(trial, track=track),)))
+    assert observed.slid_m == 0.0
+    assert len(observed.time_s) == 30
+
+
 @pytest.mark.parametrize(("strength_T", "way_m"), [(0.003, 6e-4), (0.0, 1e-4)])
 def test_a_robot_that_holds_or_that_a_field_moves_is_compared_to_the_end(strength_T: float, way_m: float) -> None:
     (observed,) = observe(seen(replace(OFF, strength_T=strength_T), way_m))

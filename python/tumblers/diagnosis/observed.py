@@ -11,6 +11,7 @@ from math import radians
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import median_filter
 
 from ..dataset import Dataset, LabTrial, Outcome
 from ..field import StaticField
@@ -121,11 +122,8 @@ def _observed(dataset: Dataset, trial: LabTrial, length_m: float) -> Observed:
     slid = 0.0
     off = isinstance(trial.field, StaticField) and trial.field.strength_T == 0.0
     if off and {"x_m", "y_m"} <= {*columns}:
-        way = _way(columns)
-        if np.nanmax(way) > _SLID * length_m:
-            slid = float(np.nanmax(way))
-            kept = kept[: np.argmax(way > 0.5 * slid)]
-            columns = {name: column[: len(kept)] for name, column in columns.items()}
+        slid, count = _slide(columns, _SLID * length_m)
+        kept, columns = kept[:count], {name: column[:count] for name, column in columns.items()}
     angle = radians(sensor.angle_noise_deg)
     height = sensor.position_noise_m if sensor.z_noise_m is None else sensor.z_noise_m
     noise = {"x": sensor.position_noise_m, "y": sensor.position_noise_m, "z": height}
@@ -155,8 +153,21 @@ def _observed(dataset: Dataset, trial: LabTrial, length_m: float) -> Observed:
     )
 
 
-def _way(columns: dict[str, Floats]) -> Floats:
-    """Return how far from its first place a robot is, m, shape (n,), NaN where lost."""
+def _slide(columns: dict[str, Floats], least_m: float) -> tuple[float, int]:
+    """Return how far a robot slid, m, and how many frames there are until half of that; 0 and all where it held.
+
+    By the middle of three frames: one in which something else was taken for the robot is no slide.
+    """
     x, y = columns["x_m"], columns["y_m"]
     seen = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
-    return np.hypot(x - x[seen[0]], y - y[seen[0]]) if len(seen) else np.zeros(len(x))
+    if not len(seen):
+        return 0.0, len(x)
+    places = np.stack([x[seen], y[seen]])
+    calm = median_filter(places, (1, 3), mode="mirror") if len(seen) > 2 else places.copy()
+    if np.hypot(*(calm - calm[:, :1])).max() <= least_m:
+        return 0.0, len(x)
+    # Of one that slides the first frame and the last are its ends, not the middle of three.
+    calm[:, [0, -1]] = places[:, [0, -1]]
+    way = np.hypot(*(calm - calm[:, :1]))
+    slid = float(way.max())
+    return slid, int(seen[np.argmax(way > 0.5 * slid)])
