@@ -6,12 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from tumblers.dataset import Dataset, Outcome
 from tumblers.diagnosis import built_floors
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.fitter import Fitter
 from tumblers.diagnosis.objective import _SHARES
+from tumblers.diagnosis.pose import Path
 from tumblers.diagnosis.simulator import Job, Simulator
 from tumblers.effects.base import Effect
 from tumblers.effects.friction_coefficient import FrictionCoefficient
@@ -26,6 +28,13 @@ def misaligned(degrees: float) -> tuple[Effect, ...]:
 
 def compared(dataset: Dataset) -> Comparison:
     return Comparison(dataset, Simulator(dataset, 1))
+
+
+def turned_in_the_plane(degrees: float) -> Path:
+    """Return the path of a body that lies flat all along, turned by so much."""
+    half = 0.5 * np.radians(degrees)
+    still = np.tile([np.cos(half), 0.0, 0.0, np.sin(half)], (3, 1))
+    return Path(1.0, np.zeros((3, 3)), still, np.zeros(3, dtype=np.int8))
 
 
 def with_outcomes() -> Dataset:
@@ -119,3 +128,28 @@ def test_a_floor_is_built_once_while_there_is_room(monkeypatch: pytest.MonkeyPat
     assert not set(taken((FrictionCoefficient(factor=1.1),))) & set(first)
     assert comparison.log_determinant == determinant
     assert not set(taken()) & set(first)
+
+
+@pytest.mark.parametrize("quaternions", [True, False])
+def test_an_angle_that_is_half_a_turn_off_changes_by_as_little_as_any(quaternions: bool) -> None:
+    (reader,) = compared(measure(plan(PLANS[:1], duration_s=0.3), quaternions=quaternions)).readers
+    frames = len(reader.observed.time_s)
+    straight = np.tile([1.0, 0.0, 0.0, 0.0], (frames, 1)) if quaternions else None
+    values = {**reader.observed.values, "heading": np.zeros(frames)}
+    reader = replace(reader, observed=replace(reader.observed, orientation=straight, values=values))
+    change = reader.change(turned_in_the_plane(179.5), turned_in_the_plane(180.5))
+    assert_allclose(change["heading"], np.radians(1.0), rtol=1e-9)
+
+
+def test_a_change_is_the_difference_of_what_is_wrong_where_no_angle_is_half_a_turn_off() -> None:
+    comparison = compared(measure(plan(PLANS[:2], duration_s=0.3), quaternions=True))
+    for reader, (path, other) in zip(
+        comparison.readers,
+        zip(*(comparison.simulator.run([Job(i, e) for i in range(2)]) for e in ((), misaligned(3.0))), strict=True),
+        strict=True,
+    ):
+        assert path is not None
+        assert other is not None
+        before, after = (reader.differences(p, np.zeros(3), np.zeros(2)) for p in (path, other))
+        for name, values in reader.change(path, other).items():
+            assert_allclose(values, np.nan_to_num(before[name] - after[name]), rtol=1e-12, atol=1e-15)

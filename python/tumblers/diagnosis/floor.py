@@ -55,7 +55,7 @@ __all__ = [
 ]
 
 Floats = NDArray[np.float64]
-_NO_LOCAL, _NO_CAMERA = np.zeros(3), np.zeros(2)
+_NO_CAMERA = np.zeros(2)
 
 # One standard deviation of what a lab's nominal numbers may be off by, as shares.
 TOLERANCES = {
@@ -288,9 +288,7 @@ def _in_twice(simulator: Simulator, edit: Edit) -> Edit:
 def _change(reader: Reader, path: Path | None, other: Path | None) -> dict[str, Floats]:
     if path is None or other is None:
         return {}
-    before = reader.differences(path, _NO_LOCAL, _NO_CAMERA)
-    after = reader.differences(other, _NO_LOCAL, _NO_CAMERA)
-    return {name: np.nan_to_num(before[name] - after[name]) for name in before}
+    return reader.change(path, other)
 
 
 def _outcome_change(reader: Reader, path: Path | None, other: Path | None) -> dict[str, float]:

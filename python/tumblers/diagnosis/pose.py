@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from .. import _core
 
-__all__ = ["Path", "body_axis", "heading_of", "relative_turn", "tilt_of"]
+__all__ = ["Path", "body_axis", "heading_of", "nearer_turn", "relative_turn", "tilt_of"]
 
 Floats = NDArray[np.float64]
 
@@ -105,3 +105,17 @@ def relative_turn(model: Floats, measured: Floats) -> Floats:
     angle = 2.0 * np.arctan2(sine, np.abs(w))
     scale = np.where(sine > 1e-12, angle / np.maximum(sine, 1e-12), 2.0)
     return np.asarray(v * scale[:, None], dtype=np.float64)
+
+
+def nearer_turn(turn: Floats, other: Floats) -> Floats:
+    """Return rotation vectors, or those of the same rotations the other way round where these are nearer to others.
+
+    Parameters
+    ----------
+    turn, other
+        Rotation vectors, rad, shape (n, 3).
+    """
+    angle = np.linalg.norm(turn, axis=1, keepdims=True)
+    around = turn * (1.0 - 2.0 * np.pi / np.maximum(angle, 1e-12))
+    nearer = np.linalg.norm(around - other, axis=1) < np.linalg.norm(turn - other, axis=1)
+    return np.asarray(np.where(nearer[:, None], around, turn), dtype=np.float64)

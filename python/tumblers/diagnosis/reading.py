@@ -24,7 +24,7 @@ from ..dataset.climb import CLIMBED, way_without_slip_m
 from ..dataset.outcome import REST_SHARE
 from ..scenario import Scenario
 from .observed import Observed
-from .pose import Path, body_axis, heading_of, relative_turn, tilt_of
+from .pose import Path, body_axis, heading_of, nearer_turn, relative_turn, tilt_of
 
 __all__ = ["SLID", "Reader", "reached", "seen_by"]
 
@@ -81,6 +81,30 @@ class Reader:
         if not len(self.observed.time_s):
             return {}
         return self._wrong(*seen_by(path, self.observed.time_s, local, camera), 1)
+
+    def change(self, path: Path, other: Path) -> dict[str, Floats]:
+        """Return how `differences` change from one path to another, m or rad, by channel, shape (n,), 0 where lost.
+
+        Turned by half a turn from what was measured, a little more is a little more, and not a turn the other way.
+
+        Parameters
+        ----------
+        path, other
+            Two of the model's.
+        """
+        before, after = (self.differences(p, np.zeros(3), np.zeros(2)) for p in (path, other))
+        if self.observed.orientation is not None:
+            names = ("tilt", "twist", "heading")
+            error, turned = (np.stack([found[name] for name in names], axis=1) for found in (before, after))
+            nearer = nearer_turn(turned, error)
+            after |= {name: nearer[:, k] for k, name in enumerate(names)}
+        elif "heading" in after:
+            seen = seen_by(other, self.observed.time_s, np.zeros(3), np.zeros(2))[1]
+            turn = 2.0 * np.pi * np.cos(tilt_of(body_axis(seen)))
+            # Of an axis that stands upright any heading counts for nothing.
+            turns = np.rint((before["heading"] - after["heading"]) / np.maximum(turn, 1e-3))
+            after["heading"] = after["heading"] + turn * turns
+        return {name: np.nan_to_num(before[name] - after[name]) for name in before}
 
     def _wrong(self, position: Floats, orientation: Floats, times: int) -> dict[str, Floats]:
         """Return `measured - model` by channel, for poses (k n, 3) and (k n, 4) of k times all frames."""
