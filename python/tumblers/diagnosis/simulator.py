@@ -284,7 +284,12 @@ class Simulator:
         scenarios = [self._possible(job) for job in jobs]
         # A camera changes what is seen, not what moves.
         moving = [None if s is None else self._run_of(s, job) for s, job in zip(scenarios, jobs, strict=True)]
-        new = list(dict.fromkeys(run for run in moving if run is not None and run not in self._known))
+        asked = dict.fromkeys(run for run in moving if run is not None)
+        new = [run for run in asked if run not in self._known]
+        for run in asked:
+            # What is asked for again and again, as the best is, must not be the first to go.
+            if run in self._known:
+                self._known.move_to_end(run)
         trials: list[_core.Trial] = []
         runnable: list[_Run] = []
         for run in new:
