@@ -149,7 +149,8 @@ class _Conclusion:
     def lead_by_what_stands(self) -> None:
         """Let that lead which stands on trials left out, of what evidence ties at the top.
 
-        It has to stand against its own noise too; if not, all stays as it was.
+        It has to stand against its own noise too, and to have been run in the others' steps; if not, all stays as it
+        was.
         """
         before, measured, floors = self.attribution, self.measured, self.comparison.floors
         behind = refused(self.comparison, self.measure(), self.stands)
@@ -157,7 +158,8 @@ class _Conclusion:
             return
         self.attribution, self.measured = seen_from_the_best(self.fitter, before.refusing(behind)), {}
         best = self.measure()[0]
-        if not (is_right(self.comparison, best.residual) and self.stands(best)):
+        held = self.comparison.simulator.resolves(best.effects) and is_right(self.comparison, best.residual)
+        if not (held and self.stands(best)):
             self.attribution, self.measured, self.comparison.floors = before, measured, floors
 
     def diagnosis(self, start: float) -> Diagnosis:
