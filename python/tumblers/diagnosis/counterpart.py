@@ -169,8 +169,9 @@ def counterparts(
     rest = [h for h in possible if h.names[0] in contender.names and h.kinds != (kind,)]
     others = [h for h in possible if h.names[0] not in contender.names and 0 < h.free <= _MOST_FREE]
     fitter.take_likeliest_noise(contender.effects)
-    shares = [np.where(mine, share * point, point) for share in (0.0, *_SHARES)]
-    still, *moved = fitter.residuals(whole, shares)
+    # A wavelength or an exponent stays what it is however weak the effect.
+    weaker = [np.where(mine, whole.weakened(point, share), point) for share in _SHARES]
+    still, *moved = fitter.residuals(whole, [np.where(mine, 0.0, point), *weaker])
     weights = fitter.weights(moved[-1], fitter.trials)
     here = weights * still.over(fitter.trials)
     wanted = [weights * residual.over(fitter.trials) - here for residual in moved]
