@@ -49,7 +49,7 @@ def test_a_gap_is_not_hidden_by_the_noise_around_what_closes_it() -> None:
     search = Search(fitter, [FrictionCoefficient], quiet, 0)
     best, nominal = sorted(search.contenders(), key=lambda c: c.total)
     assert best.names == ("friction_coefficient",)
-    assert beside(fitter, nominal, best).total < best.total + CLEAR
+    assert beside(fitter, nominal, best).total < best.total + fitter.comparison.objective_of(CLEAR)
     assert nominal.total > best.total + 100.0
     assert nominal.total == beside(fitter, nominal, nominal).total
 
@@ -107,7 +107,7 @@ def test_what_ended_beside_its_valley_is_fitted_from_where_it_does_what_the_best
     fitter, best, stuck = _tilt_and_gradient()
     found = _from_counterparts(fitter, stuck, best)
     assert stuck.total > best.total + 100.0
-    assert found.total < best.total + CLEAR
+    assert found.total < best.total + fitter.comparison.objective_of(CLEAR)
     (gradient,) = found.effects
     assert isinstance(gradient, StrayFieldGradient)
     # The noise leaves it that much.
@@ -134,7 +134,7 @@ def test_the_last_fits_start_from_where_the_best_of_all_is(monkeypatch: pytest.M
     assert {contender.names, best.names} == {tilt.names, stuck.names}
     assert best.total == min(made[names].total for names in (tilt.names, stuck.names))
     # As it is fitted by then, not as it came.
-    assert best.total < min(worse.total, stuck.total) - CLEAR
+    assert best.total < min(worse.total, stuck.total) - fitter.comparison.objective_of(CLEAR)
 
 
 @pytest.mark.parametrize(("short", "leads"), [(5.0, False), (-5.0, True)])

@@ -122,7 +122,7 @@ def test_a_search_asks_at_its_end_what_else_does_what_its_leader_does(monkeypatc
     same = ("substrate_tilt", "stray_field_gradient")
     assert any((name,) == names and name == kind for name in same for names, kind in asked)
     tilt, gradient = (found[name,] for name in same)
-    assert abs(tilt - gradient) < CLEAR
+    assert abs(tilt - gradient) < search.comparison.objective_of(CLEAR)
     assert max(tilt, gradient) < found[()] - 100.0
 
 

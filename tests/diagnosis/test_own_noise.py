@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from tumblers.diagnosis import own_noise
+from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.contender import Contender
 from tumblers.diagnosis.hypothesis import SECOND
 from tumblers.diagnosis.own_noise import again, against_the_best, each_by_itself, settled
@@ -51,6 +52,13 @@ def made(name: str, total: float, settled: bool = False) -> Contender:
     return Contender(tuple(filter(None, name.split("+"))), fit, nothing, total, settled=settled)
 
 
+def counting(alike: float) -> Any:
+    """Return a fitter of which only that is asked how much ln counts in a total."""
+    comparison = SimpleNamespace(alike=alike)
+    comparison.objective_of = lambda ln: Comparison.objective_of(comparison, ln)
+    return SimpleNamespace(comparison=comparison)
+
+
 def test_what_leads_by_another_s_noise_is_held_against_its_own_though_a_pair_is_likelier(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -59,7 +67,7 @@ def test_what_leads_by_another_s_noise_is_held_against_its_own_though_a_pair_is_
 
     monkeypatch.setattr(own_noise, "by_itself", hold)
     monkeypatch.setattr(own_noise, "_MOST_NEAR", 0)
-    fitter: Any = SimpleNamespace(comparison=SimpleNamespace(alike=1.0))
+    fitter = counting(1.0)
     # The pair takes less off than a second effect must, so that the idle one would lead.
     pair = made("cause+second", 100.0 - SECOND, settled=True)
     found = each_by_itself(fitter, [pair, made("idle", 98.0), made("cause", 100.0, settled=True)], lambda *_: None)
@@ -92,9 +100,8 @@ def test_the_best_s_noise_is_lent_to_what_is_near_by_its_own(
     monkeypatch.setattr(
         own_noise, "_with_slopes", lambda _fitter, contender, _around: replace(contender, settled=False)
     )
-    nothing: Any = None
     best, contender = made("best", 100.0, settled=True), made("a", of_the_moment, settled)
-    found = against_the_best(nothing, made("", 5000.0), [best, contender])
+    found = against_the_best(counting(8.0), made("", 5000.0), [best, contender])
     assert [c.names for c in found] == [("best",), (), ("a",)]
     assert [c.total for c in found] == [100.0, 5000.0, total]
 
@@ -115,9 +122,8 @@ def test_what_is_near_by_its_own_noise_and_is_lent_none_has_its_slopes_against_i
 
     monkeypatch.setattr(own_noise, "beside", hold)
     monkeypatch.setattr(own_noise, "by_itself", by_itself)
-    nothing: Any = None
     best = made("best", 100.0, settled=True)
-    *_, found = against_the_best(nothing, made("", 5000.0), [best, made("a", 104.0)])
+    *_, found = against_the_best(counting(8.0), made("", 5000.0), [best, made("a", 104.0)])
     assert (found.total, found.settled, found.lent) == (150.0, True, False)
     assert sloped == [(("a",), 1)]
 

@@ -72,10 +72,11 @@ def test_an_effect_alone_is_fitted_as_far_as_in_a_pair() -> None:
     pair = settled_at(fitter, size + friction, np.concatenate([there, np.zeros(2)]))
     stopped = settled_at(fitter, size, 0.9 * there)
     other = settled_at(fitter, friction, np.zeros(2))
-    assert pair.total < stopped.total - 2.0 * CLEAR
+    clear = fitter.comparison.objective_of(CLEAR)
+    assert pair.total < stopped.total - 2.0 * clear
     found = nested(fitter, stopped, [pair])
     assert found.settled
-    assert found.total < pair.total + CLEAR
+    assert found.total < pair.total + clear
     # What the pair has not, what it does better than by too little, and what is in no pair stays.
     assert nested(fitter, other, [replace(pair, names=("size_error", "substrate_tilt"))]) is other
     assert nested(fitter, found, [pair]) is found

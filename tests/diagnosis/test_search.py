@@ -56,7 +56,7 @@ def test_what_longer_steps_found_counts_by_what_it_is_in_the_right_ones(monkeypa
     assert best.settled
     assert best.total == pytest.approx(beside(fitter, best, best).total, rel=1e-9)
     (again,) = (contender for contender in made if contender.names == flattered[0].names)
-    assert again.total > best.total + NEAR
+    assert again.total > best.total + comparison.objective_of(NEAR)
 
 
 @pytest.mark.parametrize(("named", "first", "exchanged"), [(True, 1, 1), (True, 0, 0), (False, 1, 0)])

@@ -59,7 +59,8 @@ def test_what_is_not_needed_is_neutral_and_the_rest_is_fitted_farther() -> None:
     assert gradient.gradient_T_per_m[0] == gradient.gradient_T_per_m[2] == 0.0
     # Likelier than the truth itself, as a fit is; and from the truth it ends about as well.
     assert found.total < at(fitter, truth).total
-    assert found.total == pytest.approx(as_far(fitter, at(fitter, truth), fitter.comparison.alike).total, abs=CLEAR)
+    clear = fitter.comparison.objective_of(CLEAR)
+    assert found.total == pytest.approx(as_far(fitter, at(fitter, truth), fitter.comparison.alike).total, abs=clear)
 
 
 def test_what_is_needed_stays() -> None:

@@ -13,6 +13,7 @@ from tumblers.diagnosis.search import Search
 from tumblers.diagnosis.simulator import Simulator
 from tumblers.diagnosis.thresholds import CLEAR, beyond_thresholds
 from tumblers.effects.friction_coefficient import FrictionCoefficient
+from tumblers.presets import drive
 
 from .lab import LYING, OFF, PLANS, measure, plan, quiet, sliding_factor
 
@@ -41,9 +42,22 @@ def test_a_threshold_of_one_trial_is_found_beside_others_whose_cameras_are_off()
     dataset = measure(plan([*LYING, *PLANS[:3]]), (truth,), origin_m=2e-4, clock_frames=0.6)
     fitter = Fitter(Comparison(dataset, Simulator(dataset)))
     nominal = of_nominal(fitter).residual
-    assert float(np.sum(nominal.prior**2)) > CLEAR
+    assert float(np.sum(nominal.prior**2)) > fitter.comparison.objective_of(CLEAR)
     hypothesis = Hypothesis.of(FrictionCoefficient, [fitter.comparison.simulator.nominal(i) for i in fitter.trials])
     first, *_ = beyond_thresholds(fitter, hypothesis, nominal)
     (found,) = hypothesis.effects(first)
     assert isinstance(found, FrictionCoefficient)
     assert found.factor == pytest.approx(truth.factor, rel=0.01)
+
+
+def test_a_climb_that_was_noted_and_is_missed_is_enough_for_a_threshold() -> None:
+    # Of outcomes alone each counts for itself: what is a trifle for a track of many numbers decides here.
+    # All of them are planned to climb.
+    dataset = plan([(f"s{slope:g}", drive(0.020, 2.0), slope) for slope in (20.0, 45.0)], duration_s=1.0)
+    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
+    assert fitter.comparison.alike == 1.0
+    nominal = of_nominal(fitter)
+    hypothesis = Hypothesis.of(FrictionCoefficient, [fitter.comparison.simulator.nominal(i) for i in fitter.trials])
+    first, *_ = beyond_thresholds(fitter, hypothesis, nominal.residual)
+    assert nominal.cost > 9.0
+    assert fitter.cost(fitter.residuals(hypothesis, [first])[0], first) < 1.0

@@ -83,6 +83,8 @@ class Comparison:
         The fit of the sensor's nuisances.
     step_credits
         What is known of `step_credit`, by the steps of all trials, s.
+    nominal_log_determinant
+        Ln det of the covariance of the noise around the nominal model, an outcome counting as in the objective.
     """
 
     def __init__(self, dataset: Dataset, simulator: Simulator) -> None:
@@ -98,7 +100,7 @@ class Comparison:
         self.nominal_paths: list[Path | None]
         self.floors: tuple[Floor, ...]
         self._known: dict[tuple[Effect, ...], list[Sensitivity]]
-        self._nominal_log_determinant: float
+        self.nominal_log_determinant: float
         self._start()
         self.nuisances = NuisanceFit(dataset.sensor, self.readers, self.alike, simulator.threads)
         # A floor serves many comparisons: its native half is made once, and goes with it.
@@ -109,7 +111,7 @@ class Comparison:
         self.step_credits: dict[tuple[float, ...], float] = {}
         self._run_nominal()
         self.take_noise_of(())
-        self._nominal_log_determinant = sum(map(self.log_determinant_of, self.floors))
+        self.nominal_log_determinant = sum(map(self.log_determinant_of, self.floors))
 
     def _run_nominal(self) -> None:
         self.nominal_paths = self.simulator.run([Job(i) for i in range(len(self.readers))])
@@ -153,7 +155,7 @@ class Comparison:
         The noise inside is that of the longer steps: what they get wrong speaks for nothing there either. Objectives
         inside do not compare with those outside.
         """
-        known, determinant = self.step_credits, self._nominal_log_determinant
+        known, determinant = self.step_credits, self.nominal_log_determinant
         with self.restored():
             self._longer = True
             self.simulator.lengthen_steps()
@@ -162,7 +164,7 @@ class Comparison:
                 yield
             finally:
                 self._longer = False
-                self.step_credits, self._nominal_log_determinant = known, determinant
+                self.step_credits, self.nominal_log_determinant = known, determinant
 
     def take_steps_of(self, effects: tuple[Effect, ...]) -> None:
         """Run the nominal model in the steps that a hypothesis is run in.
@@ -194,7 +196,7 @@ class Comparison:
     @property
     def log_determinant(self) -> float:
         """Ln det of the noise's covariance over that of the nominal model's."""
-        return sum(map(self.log_determinant_of, self.floors)) - self._nominal_log_determinant
+        return sum(map(self.log_determinant_of, self.floors)) - self.nominal_log_determinant
 
     def log_determinant_of(self, floor: Floor) -> float:
         """Return ln det of the noise of a trial, an outcome counting as in the objective.
@@ -224,6 +226,17 @@ class Comparison:
         intervals = [self.readers[i].observed.compared_interval_s for i in tracked]
         found = [min(max(_ALIKE_S / interval, 1.0), _MOST_ALIKE) if interval > 0.0 else 1.0 for interval in intervals]
         return float(np.average(found, weights=[max(self.sizes[i], 1) for i in tracked]))
+
+    def objective_of(self, ln: float) -> float:
+        """Return what so much of ln of a likelihood counts in the objective, or in a contender's total.
+
+        Parameters
+        ----------
+        ln
+            Where noise explains what is left; where even the best leaves more, the dispersion divides the objective
+            by that too.
+        """
+        return 2.0 * self.alike * ln
 
     @property
     def rough(self) -> float:

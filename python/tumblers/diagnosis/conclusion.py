@@ -95,9 +95,9 @@ def resolved(
 def _equally_far(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase) -> list[Contender]:
     """Fit what may be as good as the best as far as that, without what it does not need, and from where the best is."""
     alike, made = fitter.comparison.alike, list(contenders)
-    scores = [parsimonious_total(c, alike) for c in made]
+    scores = [parsimonious_total(c, fitter.comparison) for c in made]
     order = np.argsort(scores, kind="stable").tolist()
-    best, open_to = made[order[0]], scores[order[0]] + 2.0 * alike * OPEN
+    best, open_to = made[order[0]], scores[order[0]] + fitter.comparison.objective_of(OPEN)
     # All against one noise: what does as the best does may have stopped beside its valley.
     fitter.take_likeliest_noise(best.effects)
     costs = [fitter.again(c.fit).cost + c.step_credit for c in made if c.fit is not None]
@@ -124,7 +124,7 @@ def _equally_far(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase)
         made[k] = _from_counterparts(fitter, made[k], made[singles[0]])
     # A pair that adds less than a second effect must neither leads nor lends its noise: that would favour its own parts
     # before others that do the same.
-    return sorted(made, key=lambda contender: parsimonious_total(contender, alike))
+    return sorted(made, key=lambda contender: parsimonious_total(contender, fitter.comparison))
 
 
 def _from_counterparts(fitter: Fitter, contender: Contender, best: Contender) -> Contender:

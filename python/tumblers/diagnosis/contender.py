@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..effects.base import Effect
-from .comparison import Residual
+from .comparison import Comparison, Residual
 from .fit import Fit
 from .fitter import Fitter
 from .hypothesis import SECOND
@@ -80,8 +80,7 @@ class Contender:
     def total(self) -> float:
         """What contenders are compared by: twice the dispersion times -ln likelihood, but for what is the same for all.
 
-        In this unit, not in ln: `CLEAR`, `ENOUGH`, `NEAR`. What is said in ln, as `OPEN` or `SECOND`, counts twice for
-        each of the numbers that count as one (`Comparison.alike`).
+        What is said in ln, as `CLEAR` or `OPEN`, counts as `Comparison.objective_of` has it.
         """
         return self.cost + self.log_determinant + self.step_credit
 
@@ -114,17 +113,17 @@ def likeliest(contenders: Iterable[Contender]) -> Contender:
     return min(contenders, key=_total)
 
 
-def parsimonious_total(contender: Contender, alike: float) -> float:
+def parsimonious_total(contender: Contender, comparison: Comparison) -> float:
     """Return a contender's total with what a second effect has to take off it (`SECOND`).
 
     Parameters
     ----------
     contender
         Of one or two effects.
-    alike
-        How many numbers count as one.
+    comparison
+        The dataset.
     """
-    return contender.total + 2.0 * alike * SECOND * (len(contender.names) - 1)
+    return contender.total + comparison.objective_of(SECOND) * (len(contender.names) - 1)
 
 
 def _total(contender: Contender) -> float:

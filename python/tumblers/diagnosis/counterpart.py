@@ -103,6 +103,7 @@ def _add_counterparts(
 ) -> None:
     """Keep the counterparts of a contender that are better than what is known of the same effects."""
     assert best.fit is not None
+    enough = fitter.comparison.objective_of(ENOUGH)
     for kind in best.fit.hypothesis.kinds:
         those = as_good(fitter, best, kind, possible)
         first = list(dict.fromkeys(c.hypothesis.names for c in those))[:_FITTED]
@@ -115,13 +116,15 @@ def _add_counterparts(
             known = made.get(frozenset(other.names))
             if known is not None and known.fit is not None and not known.settled:
                 known = against_itself(fitter, known.fit)
-            if known is None or other.total < known.total - ENOUGH:
+            if known is None or other.total < known.total - enough:
                 made[frozenset(other.names)] = other
 
 
 def _is_better(fitter: Fitter, fit: Fit, known: Contender | None) -> bool:
     """Return whether a fit is better than what is known of the same effects, against the noise of the moment."""
-    return known is None or known.fit is None or fit.cost <= fitter.again(known.fit).cost - ENOUGH
+    if known is None or known.fit is None:
+        return True
+    return fit.cost <= fitter.again(known.fit).cost - fitter.comparison.objective_of(ENOUGH)
 
 
 def as_good(

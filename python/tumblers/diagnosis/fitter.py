@@ -19,8 +19,8 @@ Floats = NDArray[np.float64]
 
 # A guess that is nearer to a start than this, as a share of the way, is no other start.
 _NEAR = 0.15
-# A guess is simulated where it promises so much of the cost; the first effects' parameters move no farther than this.
-_PROMISE, _FARTHEST = 4.0, 0.3
+# A guess is simulated where it promises so much, in ln; the first effects' parameters move no farther than this.
+_PROMISE, _FARTHEST = 0.25, 0.3
 
 
 class Fitter(Objective):
@@ -52,6 +52,7 @@ class Fitter(Objective):
         weights = self.weights(still, self.trials)
         here = weights * still.over(self.trials)
         first = np.empty((len(here), 0)) if slopes is None else slopes[: len(here)]
+        least = self.comparison.objective_of(_PROMISE)
         tried: list[list[tuple[float, int, Floats]]] = []
         guesses: list[list[Floats]] = []
         for h, b, points, residuals in zip(hypotheses, base, starts, found, strict=True):
@@ -72,7 +73,7 @@ class Fitter(Objective):
                     step = step + np.clip(share, -_FARTHEST, 3.0) * (points[k] - b)
                 near = len(chosen) == 1 and not first.shape[1] and abs(shares[0] - 1.0) < _NEAR
                 promise = float(here @ here - np.sum((here + table @ shares) ** 2))
-                if promise > _PROMISE and not near:
+                if promise > least and not near:
                     mine.append((-promise, np.clip(b + step, h.low, h.high)))
             # With other effects at work already, one guess each is looked at.
             mine.sort(key=lambda guess: guess[0])

@@ -134,7 +134,7 @@ def _refitted(fitter: Fitter, fit: Fit, train: tuple[int, ...]) -> Floats:
     information = there.jacobian.T @ there.jacobian
     start = np.linalg.solve(information + np.eye(len(fit.point)) / PRIOR_SIGMA**2, information @ fit.point)
     cost, point = fitter.descend(fit.hypothesis, np.asarray(start, dtype=np.float64), train, _EVALUATIONS)
-    if there.cost < cost - CLEAR:
+    if there.cost < cost - fitter.comparison.objective_of(CLEAR):
         _, point = fitter.descend(fit.hypothesis, fit.point, train, _EVALUATIONS)
     return point
 

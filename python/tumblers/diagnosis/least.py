@@ -65,6 +65,7 @@ def least(
     """
     chosen = fitter.trials if train is None else tuple(train)
     costs: dict[int, float] = {}
+    clear = fitter.comparison.objective_of(CLEAR)
 
     def over(these: Sequence[int], part: Sequence[int]) -> list[Residual]:
         return fitter.residuals(hypothesis, [points[k] for k in these], part, share)
@@ -86,9 +87,9 @@ def least(
         some = tuple(chosen[n] for n in part)
         bounds = {k: fitter.cost(residual, points[k], some) for k, residual in zip(left, over(left, some), strict=True)}
         # What promises most lowers the limit for the rest.
-        measure([k for k in sorted(left, key=lambda k: (bounds[k], k))[:count] if bounds[k] <= limit + CLEAR])
+        measure([k for k in sorted(left, key=lambda k: (bounds[k], k))[:count] if bounds[k] <= limit + clear])
         bound = min([limit, *sorted(costs.values())[count - 1 : count]])
-        left = [k for k in left if k not in costs and bounds[k] <= bound + CLEAR]
+        left = [k for k in left if k not in costs and bounds[k] <= bound + clear]
     measure(left)
     best = sorted((k for k in costs if costs[k] <= limit), key=lambda k: (costs[k], k))[:count]
     return [(costs[k], points[k]) for k in best]

@@ -45,7 +45,7 @@ def all_shaken(fitter: Fitter, contenders: Sequence[Contender], seed: int, tell:
     tell
         Is told the phase, how much of it is done, and of how much.
     """
-    near = contenders[0].total + CLEAR
+    near = contenders[0].total + fitter.comparison.objective_of(CLEAR)
     chosen = [k for k, contender in enumerate(contenders) if contender.settled and contender.total < near]
     made = list(contenders)
     for k in chosen[:_SHAKEN]:
@@ -68,6 +68,7 @@ def shaken(fitter: Fitter, contender: Contender, seed: int, tell: OnPhase) -> Co
         Is told the phase, how much of it is done, and of how much.
     """
     rng, best = np.random.default_rng(seed), contender
+    clear, enough = (fitter.comparison.objective_of(ln) for ln in (CLEAR, ENOUGH))
     for k in range(_SHAKES):
         tell("around the best", k, _SHAKES)
         assert best.fit is not None
@@ -80,10 +81,10 @@ def shaken(fitter: Fitter, contender: Contender, seed: int, tell: OnPhase) -> Co
         ends = [fitter.descend(hypothesis, start, evaluations=_FIT_POINTS) for start in starts]
         cost, point = min(ends, key=lambda end: end[0])
         # What is clearly worse against this noise is not looked at against its own.
-        if cost > fitter.again(best.fit).cost + CLEAR:
+        if cost > fitter.again(best.fit).cost + clear:
             break
         other = settled_at(fitter, hypothesis, point)
-        if other.total > best.total - ENOUGH:
+        if other.total > best.total - enough:
             break
         best = other
     return best

@@ -44,8 +44,8 @@ Floats = NDArray[np.float64]
 
 # Trial points of a fit that has only to follow another noise, and of a good one that is taken further.
 IDLE_POINTS, POLISH_POINTS = 2, 6
-# What takes so much off a total asks for another round.
-ENOUGH = 5.0
+# What is likelier by so much, in ln, asks for another round.
+ENOUGH = 0.3125
 # Effects that are held against their own noise before one counts as best, and how many where that gains much.
 OWN, MOST_OWN = 4, 6
 # How many of other fits are (the defaults of `settled`), and how often it is measured after a further fit at most.
@@ -53,8 +53,8 @@ _SETTLED, _ROUNDS = 2, 2
 # What another may gain by its own noise, over the most that one has gained: at one threshold, in a dataset whose truth
 # was known, five effects gained 640 to 790.
 _AS_MUCH = 1.5
-# What comes so near to the best's total is held against its own noise, so many at most.
-NEAR, _MOST_NEAR = 300.0, 6
+# What comes so near to the best, in ln, is held against its own noise, so many at most.
+NEAR, _MOST_NEAR = 18.75, 6
 
 
 def again(fitter: Fitter, contenders: Sequence[Contender]) -> list[Contender]:
@@ -146,10 +146,11 @@ def _settled(fitter: Fitter, contender: Contender) -> Contender:
     """Hold a fit against its own noise, and fit it on as long as that helps."""
     assert contender.fit is not None
     best = against_itself(fitter, contender.fit)
+    enough = fitter.comparison.objective_of(ENOUGH)
     for _ in range(_ROUNDS):
         assert best.fit is not None
         fit = fitter.fit(best.fit.hypothesis, best.point, evaluations=POLISH_POINTS, steps=best.fit.steps)
-        other = against_itself(fitter, fit) if fit.cost < best.cost - ENOUGH else best
+        other = against_itself(fitter, fit) if fit.cost < best.cost - enough else best
         if other.total >= best.total:
             break
         best = other
@@ -177,16 +178,15 @@ def each_by_itself(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhas
     list
         The same, what leads first, which is settled.
     """
-    alike = fitter.comparison.alike
 
     def best_first(those: Sequence[Contender]) -> list[Contender]:
-        return sorted(those, key=lambda contender: parsimonious_total(contender, alike))
+        return sorted(those, key=lambda contender: parsimonious_total(contender, fitter.comparison))
 
     made = best_first(contenders)
     count = 0
     # Where all of the nearest lost by it, the leader may be one that has not been held so.
     while count < _MOST_NEAR or not made[0].settled:
-        far = made[0].total + NEAR
+        far = made[0].total + fitter.comparison.objective_of(NEAR)
         waiting = [k for k, contender in enumerate(made) if not contender.settled and contender.total <= far]
         if not waiting:
             break
@@ -255,7 +255,7 @@ def against_the_best(fitter: Fitter, nominal: Contender, contenders: Sequence[Co
     best = contenders[0]
     made = [best]
     for contender in (nominal, *contenders[1:]):
-        near = contender.total <= best.total + NEAR
+        near = contender.total <= best.total + fitter.comparison.objective_of(NEAR)
         made.append(_lent(fitter, contender, best) if near else contender)
     return made
 
@@ -264,7 +264,7 @@ def _lent(fitter: Fitter, contender: Contender, best: Contender) -> Contender:
     """Return a contender against the noise around the best where that may be lent to it, else against its own."""
     # An effect that does nothing would else look as good as the best by the best's noise, and the nominal model not.
     own = contender if contender.settled or not contender.names else beside(fitter, contender, contender)
-    if own.total > best.total + NEAR:
+    if own.total > best.total + fitter.comparison.objective_of(NEAR):
         return own
     other = beside(fitter, own, best)
     if other.total < own.total and _says_the_same(fitter, own, best, other):
@@ -290,7 +290,8 @@ def _says_the_same(fitter: Fitter, contender: Contender, best: Contender, lent: 
     What the best changes moves more easily where it is at work: its noise may hide the very gap that it closes.
     """
     own = beside(fitter, contender, contender)
-    return own.total - beside(fitter, best, contender).total < lent.total - best.total + CLEAR
+    clear = fitter.comparison.objective_of(CLEAR)
+    return own.total - beside(fitter, best, contender).total < lent.total - best.total + clear
 
 
 def lead_around(fitter: Fitter, contender: Contender, other: Contender) -> float:

@@ -150,7 +150,7 @@ class PairSearch:
         pair, single
             Two effects, and one.
         """
-        return parsimonious_total(pair, self.fitter.comparison.alike) < single.total
+        return parsimonious_total(pair, self.fitter.comparison) < single.total
 
     def exchanged(self, found: Sequence[Contender], singles: Sequence[Contender]) -> list[Contender]:
         """Exchange either effect of the best pair: one may be the answer to another that is wrong.

@@ -93,8 +93,9 @@ class Pairs:
             points[0][0] + step_credit(self.fitter, h.effects(points[0][1]))
             for h, points in zip(joined, scans, strict=True)
         ]
+        clear = self.fitter.comparison.objective_of(CLEAR)
         for k in np.argsort(costs, kind="stable")[:_SECONDS]:
-            if costs[k] < first.cost + first.step_credit - CLEAR:
+            if costs[k] < first.cost + first.step_credit - clear:
                 self._keep(joined[k], scans[k][0][1])
 
     def exchange(self, pair: Contender, kind: type[Effect], singles: Sequence[Contender]) -> None:
@@ -203,7 +204,8 @@ def nested(fitter: Fitter, single: Contender, pairs: Iterable[Contender]) -> Con
     pairs
         Two effects each.
     """
-    better = [p for p in pairs if single.names[0] in p.names and p.total <= single.total - CLEAR]
+    least = single.total - fitter.comparison.objective_of(CLEAR)
+    better = [p for p in pairs if single.names[0] in p.names and p.total <= least]
     if not better:
         return single
     pair = likeliest(better)

@@ -35,9 +35,9 @@ __all__ = ["Search"]
 
 Floats = NDArray[np.float64]
 
-# What takes less than so much, times the numbers that count as one, off the nominal model's objective is not worth
-# another look, for the prior asks for as much.
-_WORTH = 9.0
+# What is likelier than the nominal model by less than so much, in ln, is not worth another look, for the prior asks for
+# as much.
+_WORTH = 4.5
 # Trial points of a fit: of an effect that leads after the scan (so many do), and of another (where nothing is better
 # than neutral only the derivatives are taken).
 _LEADING, _LEADING_POINTS, _POINTS = 6, 6, 4
@@ -71,7 +71,8 @@ class Search:
         scenarios = [self.comparison.simulator.nominal(i) for i in fitter.trials]
         possible = [Hypothesis.of(kind, scenarios) for kind in kinds]
         self.possible = [hypothesis for hypothesis in possible if len(hypothesis.starts)]
-        self.worth = _WORTH * self.comparison.alike
+        self.worth = self.comparison.objective_of(_WORTH)
+        self.clear = self.comparison.objective_of(CLEAR)
         # Points at which a threshold makes one trial right.
         self.hints: dict[tuple[str, ...], list[Floats]] = {}
 
@@ -130,7 +131,7 @@ class Search:
         self.comparison.halve_steps_for(found[0].effects)
         self.fitter.take_likeliest_noise(found[0].effects)
         # What came near the best counts against its own noise here too.
-        near = found[0].total + NEAR
+        near = found[0].total + self.comparison.objective_of(NEAR)
         held = again(self.fitter, [c if c.total <= near else replace(c, settled=False) for c in found])
         made = settled(self.fitter, held, self.tell, fitted=True)
         made = likeliest_first([shaken(self.fitter, made[0], self.seed, self.tell), *made[1:]])
@@ -176,7 +177,7 @@ class Search:
         if not is_enough(self.comparison, [*singles, *pairs]):
             far = settled(self.fitter, self._far(singles, searched), self.tell)
             near, singles = singles, far
-            more = CLEAR if near[0].names != far[0].names else max(CLEAR, _FARTHER * far[0].cost)
+            more = self.clear if near[0].names != far[0].names else max(self.clear, _FARTHER * far[0].cost)
             untried = near[0].total > worth
             if far[0].total <= worth and (untried or near[0].total - far[0].total > more):
                 pairs = self.pairing.found(singles, strong=True, known=pairs)
@@ -203,7 +204,7 @@ class Search:
         promising = sorted(few, key=lambda k: -promises[k])[:_PROMISING]
         for k, contender in enumerate(made):
             many = contender.free > MANY and contender.names not in searched
-            if many or (k in promising and promises[k] > CLEAR):
+            if many or (k in promising and promises[k] > self.clear):
                 made[k] = from_beginnings(self.fitter, contender, self.possible, self.seed)
         return likeliest_first(made)
 
@@ -223,7 +224,7 @@ class Search:
             if contender.fit.hypothesis.strengths > 1:
                 continue
             wanted = (1.0 - AS_GOOD) * (beginning(self.fitter, contender) - goal)
-            if promise(self.fitter, contender, self.seed) > max(CLEAR, wanted):
+            if promise(self.fitter, contender, self.seed) > max(self.clear, wanted):
                 other = from_beginnings(self.fitter, contender, self.possible, self.seed)
                 made[k] = by_itself(self.fitter, other, IDLE_POINTS)
                 self.fitter.take_likeliest_noise(best.effects)
@@ -256,7 +257,7 @@ class Search:
             self.hints[contender.names] = points
             for point, residual in zip(points, fitter.residuals(hypothesis, points), strict=True):
                 # Right for a trial, it may be about as wrong as neutral for all: what else it asks for, the fit shows.
-                if fitter.cost(residual, point) < made[k].cost + CLEAR:
+                if fitter.cost(residual, point) < made[k].cost + self.clear:
                     other = of_fit(fitter, fitter.fit(hypothesis, point, evaluations=_LEADING_POINTS))
                     made[k] = likeliest([made[k], other])
         return made

@@ -65,11 +65,14 @@ def with_tracked_point(dataset: Dataset, kinds: Sequence[type[Effect]], jobs: in
         tell("which point was tracked", k, len(readings))
         found.append(_likeliest(reading, offset, jobs))
     (shape, _), (mass, wanting) = found
-    return readings[1 if mass < shape - CLEAR and not wanting else 0]
+    return readings[1 if mass > shape + CLEAR and not wanting else 0]
 
 
 def _likeliest(dataset: Dataset, offset: bool, jobs: int) -> tuple[float, bool]:
-    """Return the least total of the nominal model and, where considered, an offset, and whether that leaves a gap."""
+    """Return ln of the likelihood of the nominal model or, where considered, of an offset; and whether it leaves a gap.
+
+    By either reading, so that what the nominal model's noise is by one counts too.
+    """
     fitter = Fitter(Comparison(dataset, Simulator(dataset, jobs)))
     fitter.take_likeliest_noise(())
     best = nominal = of_nominal(fitter)
@@ -79,4 +82,5 @@ def _likeliest(dataset: Dataset, offset: bool, jobs: int) -> tuple[float, bool]:
         (starts,) = fitter.scan([hypothesis], [np.zeros(len(hypothesis.neutral))], nominal.residual)
         _, start = starts[0]
         best = likeliest([nominal, against_itself(fitter, fitter.fit(hypothesis, start, evaluations=_POINTS))])
-    return best.total, is_wanting(fitter.comparison, best.residual)
+    total = best.total + fitter.comparison.nominal_log_determinant
+    return -total / fitter.comparison.objective_of(1.0), is_wanting(fitter.comparison, best.residual)

@@ -116,7 +116,7 @@ def lacks_at_place(
     )
     nothing = left_by(comparison, residual, trial, path, residual.trials[trial])
     best, rest = float(np.min(there)), min(nothing, float(np.min(elsewhere, initial=np.inf)))
-    clear = 2.0 * comparison.alike * (CLEAR_LN + log(total))
+    clear = comparison.objective_of(CLEAR_LN + log(total))
     if best >= rest - clear or best > (1.0 - _LEAST_TAKEN) * nothing:
         return None
     wide = comparison.alike * max(1.0, best / comparison.weighed[trial])
