@@ -163,7 +163,7 @@ def _slide(columns: dict[str, Floats], least_m: float) -> tuple[float, int]:
     if not len(seen):
         return 0.0, len(x)
     places = np.stack([x[seen], y[seen]])
-    calm = median_filter(places, (1, 3), mode="mirror") if len(seen) > 2 else places.copy()
+    calm = median_filter(places, (1, 3), mode="mirror")
     if np.hypot(*(calm - calm[:, :1])).max() <= least_m:
         return 0.0, len(x)
     # Of one that slides the first frame and the last are its ends, not the middle of three.
