@@ -92,14 +92,15 @@ class Reader:
         path, other
             Two of the model's.
         """
-        before, after = (self.differences(p, np.zeros(3), np.zeros(2)) for p in (path, other))
+        perfect = np.zeros(3), np.zeros(2)
+        before, after = (self.differences(p, *perfect) for p in (path, other))
         if self.observed.orientation is not None:
             names = ("tilt", "twist", "heading")
             error, turned = (np.stack([found[name] for name in names], axis=1) for found in (before, after))
             nearer = nearer_turn(turned, error)
             after |= {name: nearer[:, k] for k, name in enumerate(names)}
         elif "heading" in after:
-            seen = seen_by(other, self.observed.time_s, np.zeros(3), np.zeros(2))[1]
+            seen = seen_by(other, self.observed.time_s, *perfect)[1]
             turn = 2.0 * np.pi * np.cos(tilt_of(body_axis(seen)))
             # Of an axis that stands upright any heading counts for nothing.
             turns = np.rint((before["heading"] - after["heading"]) / np.maximum(turn, 1e-3))

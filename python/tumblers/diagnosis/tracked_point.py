@@ -71,7 +71,7 @@ def with_tracked_point(dataset: Dataset, kinds: Sequence[type[Effect]], jobs: in
 def _likeliest(dataset: Dataset, offset: bool, jobs: int) -> tuple[float, bool]:
     """Return ln of the likelihood of the nominal model or, where considered, of an offset; and whether it leaves a gap.
 
-    By either reading, so that what the nominal model's noise is by one counts too.
+    But for what is the same for both readings: a total leaves out the noise around the nominal model, which is not.
     """
     fitter = Fitter(Comparison(dataset, Simulator(dataset, jobs)))
     fitter.take_likeliest_noise(())
