@@ -96,6 +96,26 @@ def test_a_counterpart_is_looked_for_along_each_parameter_alone_too() -> None:
     assert np.flatnonzero(alone).tolist() == [1]
 
 
+def test_what_does_the_same_as_a_weaker_effect_is_sought_in_its_own_form(monkeypatch: pytest.MonkeyPatch) -> None:
+    truth = StrayFieldGradient(gradient_T_per_m=(0.0, 0.1, 0.0), frequency_exponent=1.0)
+    search = _search(truth)
+    best, seen = _at(search, truth), list[np.ndarray]()
+    run = Fitter.residuals
+
+    def noted(fitter: Fitter, hypothesis: Hypothesis, points: Sequence[Any], *rest: Any, **more: Any) -> Any:
+        if hypothesis.names == best.names:
+            seen.extend(points)
+        return run(fitter, hypothesis, points, *rest, **more)
+
+    monkeypatch.setattr(Fitter, "residuals", noted)
+    counterparts(search.fitter, best, StrayFieldGradient, search.possible)
+    along, exponent = 1, 3
+    assert best.point[exponent] != 0.0
+    weaker = [point for point in seen if 0.0 < abs(point[along]) < abs(best.point[along])]
+    assert weaker
+    assert all(point[exponent] == best.point[exponent] for point in weaker)
+
+
 def test_a_search_keeps_what_does_the_same_better_than_the_best_does() -> None:
     truth = StrayFieldGradient(gradient_T_per_m=(0.0, 0.1, 0.0))
     search = _search(truth)

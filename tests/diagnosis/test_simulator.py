@@ -61,6 +61,16 @@ def test_the_oldest_makes_room_and_comes_back_the_same(monkeypatch: pytest.Monke
     np.testing.assert_array_equal(first.orientation, back.orientation)
 
 
+def test_what_was_asked_for_again_is_not_the_oldest(monkeypatch: pytest.MonkeyPatch) -> None:
+    simulator, made = Simulator(plan(), 1), rollouts_made(monkeypatch)
+    simulator.run(jobs(0, 1))
+    monkeypatch.setattr(simulators, "_MOST_KEPT", int(3.5 * simulator._kept))
+    for asked in ((1, 2), (0, 1), (3, 2), (0, 1), (1, 1)):
+        simulator.run(jobs(*asked))
+    # The first is there to the end, which a second asked for once is not.
+    assert made == [1, 2, 0, 2, 0, 1]
+
+
 @pytest.mark.parametrize(("factor", "resolved"), [(1.0, True), (100.0, False)])
 def test_a_diagnosis_ends_a_rollout_that_spins_and_nothing_else_does(factor: float, resolved: bool) -> None:
     simulator = Simulator(plan(), 1)
