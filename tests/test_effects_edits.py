@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.spatial.transform import Rotation
 
 from tumblers import (
     Cuboid,
@@ -24,6 +25,7 @@ from tumblers import (
     preset_scenario,
     simulate,
 )
+from tumblers.camera import Camera
 from tumblers.effects import CATALOGUE
 from tumblers.presets import ROBOTS
 from tumblers.relief import Relief
@@ -282,6 +284,20 @@ def test_roughness_is_a_relief_and_adds_to_one_of_its_wavelength() -> None:
     assert_allclose(edited("surface_roughness", longer, **keys).relief.cosine_m, (2e-6, 3e-6, 4e-6, 1e-6), rtol=1e-14)
     with pytest.raises(InputError, match=r"surface_roughness\.wavelength_m: found 0\.002, expected 0\.001, that of"):
         edited("surface_roughness", once, cosine_m=(1e-6, 0.0, 0.0))
+
+
+def test_a_camera_follows_the_shape_or_the_mass() -> None:
+    offset_m = np.array([2e-5, -3e-5, 1e-5])
+    moved = edited("center_of_mass_offset", offset_m=tuple(offset_m))
+    run = simulate(moved)
+    turned = Rotation.from_quat(run["orientation"].values, scalar_first=True)
+    shape_m = run["position_m"].values - turned.apply(offset_m)
+    assert_allclose(run["seen_position_m"], shape_m, atol=1e-17)
+    assert run["seen_position_m"].attrs["long_name"].startswith("centre of the body's shape")
+    assert "seen_position_m" not in simulate(replace(moved, camera=Camera(tracked_point="centre_of_mass")))
+    larger = simulate(replace(moved, camera=Camera(tracked_point="centre_of_mass", scale=2.0)))
+    assert_allclose(larger["seen_position_m"][:, :2], 2.0 * run["position_m"][:, :2], rtol=1e-15)
+    assert larger["seen_position_m"].attrs["long_name"].startswith("centre of mass")
 
 
 def test_the_camera_leaves_the_motion_as_it_is() -> None:

@@ -73,6 +73,7 @@ REFUSED = [
     ("[run]", "[camera]\nheading_deg = nan\n[run]", "camera.heading_deg", "nan"),
     ("[run]", "[camera]\norigin_m = [0.0]\n[run]", "camera.origin_m", "a list of 2 numbers"),
     ("[run]", "[camera]\ntime_offset_s = 'a'\n[run]", "camera.time_offset_s", "'a'"),
+    ("[run]", "[camera]\ntracked_point = 'nose'\n[run]", "camera.tracked_point", "body_centre or centre_of_mass"),
     ("[run]", "[relief]\nwavelength_m = 0\n[run]", "relief.wavelength_m", "greater than 0"),
     ("[run]", "[relief]\ncosine_m = [1e-6]\n[run]", "relief.sine_m", "found 0 amplitudes, expected 1, as many as in"),
     ("[run]", "[relief]\ncosine_m = ['a']\n[run]", "relief.cosine_m[0]", "a finite number"),

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import cos, radians, sin
-from typing import Any
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .check import number, pair
+from .check import choice, number, pair
 
-__all__ = ["Camera"]
+__all__ = ["Camera", "TrackedPoint"]
+
+TrackedPoint = Literal["body_centre", "centre_of_mass"]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -28,23 +30,65 @@ class Camera:
         Where the substrate's origin is seen, (x, y), m.
     time_offset_s
         The field's time when the camera's clock says 0, s.
+    tracked_point
+        What a position that is seen is of: ``body_centre``, the centre of the body's shape, or ``centre_of_mass``.
 
     Raises
     ------
     InputError
-        A number that is refused.
+        A number or a word that is refused.
     """
 
     scale: float = 1.0
     heading_deg: float = 0.0
     origin_m: tuple[float, float] = (0.0, 0.0)
     time_offset_s: float = 0.0
+    tracked_point: TrackedPoint = "body_centre"
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "scale", number("camera.scale", self.scale, above=0.0))
         object.__setattr__(self, "heading_deg", number("camera.heading_deg", self.heading_deg))
         object.__setattr__(self, "origin_m", pair("camera.origin_m", self.origin_m))
         object.__setattr__(self, "time_offset_s", number("camera.time_offset_s", self.time_offset_s))
+        choice("camera.tracked_point", self.tracked_point, get_args(TrackedPoint))
+
+    @property
+    def perfect(self) -> Camera:
+        """The camera that is not off, of the same point."""
+        return Camera(tracked_point=self.tracked_point)
+
+    def tracked_m(self, center_of_mass_m: ArrayLike) -> NDArray[np.float64]:
+        """Return where on the body the tracked point is, from the centre of mass, body frame, m, shape (3,).
+
+        Parameters
+        ----------
+        center_of_mass_m
+            The centre of mass, from the centre of the shape, body frame, m, shape (3,).
+        """
+        if self.tracked_point == "centre_of_mass":
+            return np.zeros(3)
+        return -np.array(center_of_mass_m, dtype=np.float64)
+
+    def tracked_position(
+        self, position_m: NDArray[np.float64], orientation: NDArray[np.float64], center_of_mass_m: ArrayLike
+    ) -> NDArray[np.float64]:
+        """Return where the tracked point is, substrate frame, m, shape (n, 3): r + R(q) p.
+
+        Parameters
+        ----------
+        position_m
+            Of the centre of mass, r, substrate frame, m, shape (n, 3).
+        orientation
+            Unit quaternions q, w, x, y, z, body to substrate, shape (n, 4).
+        center_of_mass_m
+            From the centre of the shape, -p, body frame, m, shape (3,).
+        """
+        place = self.tracked_m(center_of_mass_m)
+        if not place.any():
+            return position_m
+        w, v = orientation[:, :1], orientation[:, 1:]
+        cross = np.cross(v, place)
+        return np.asarray(position_m + (place + 2.0 * (w * cross + np.cross(v, cross))))
 
     def seen_position(self, position_m: ArrayLike) -> NDArray[np.float64]:
         """Return positions as they are seen: x and y turned, scaled and from another origin, z as it is.

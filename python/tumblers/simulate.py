@@ -10,7 +10,6 @@ import numpy as np
 import xarray as xr
 
 from . import _core
-from .camera import Camera
 from .check import choice
 from .metrics import FLIP_DEG
 from .progress import OnProgress, native_call
@@ -60,8 +59,9 @@ def simulate(scenario: Scenario, solver: Solver = "reduced", progress: bool | On
     -------
     xarray.Dataset
         A row for the start, every ``output_every_s`` and the end: dimensions ``time`` (coordinate in s), ``axis``
-        (x, y, z), ``wxyz`` and ``tor`` (t, o, r), every variable with its units. Where the camera is not as it should
-        be, ``seen_time_s``, ``seen_position_m`` and ``seen_orientation`` are what it sees.
+        (x, y, z), ``wxyz`` and ``tor`` (t, o, r), every variable with its units. Where the camera is off, or the point
+        that it follows is not the centre of mass, ``seen_time_s``, ``seen_position_m`` and ``seen_orientation`` are
+        what it sees.
 
         Attributes: the scenario's TOML; ``twist_deg`` and ``drift_m`` after one cycle of the field (NaN if there is
         none), ``flipped``, ``speed_m_per_s``, ``steps``, ``unconverged_steps``, ``max_residual``,
@@ -92,14 +92,17 @@ def simulate(scenario: Scenario, solver: Solver = "reduced", progress: bool | On
         name: (dims, run[name], {"units": units, "long_name": meaning, **_SPECIAL.get(name, {})})
         for name, (dims, units, meaning) in _VARIABLES.items()
     }
-    variables |= _seen(scenario.effective().camera, run)
+    variables |= _seen(scenario.effective(), run)
     return xr.Dataset(variables, coordinates, attrs=_attributes(scenario, solver, run) | chosen)
 
 
-def _seen(camera: Camera, run: Mapping[str, Any]) -> dict[str, tuple[tuple[str, ...], Any, dict[str, str]]]:
-    """Return what a camera that is not as it should be sees of a run."""
-    if camera == Camera():
+def _seen(scenario: Scenario, run: Mapping[str, Any]) -> dict[str, tuple[tuple[str, ...], Any, dict[str, str]]]:
+    """Return what a camera that is off, or that follows another point than the centre of mass, sees of a run."""
+    camera, mass_m = scenario.camera, scenario.robot.center_of_mass_m
+    if camera == camera.perfect and not camera.tracked_m(mass_m).any():
         return {}
+    point = {"body_centre": "centre of the body's shape", "centre_of_mass": "centre of mass"}[camera.tracked_point]
+    tracked = camera.tracked_position(run["position_m"], run["orientation"], mass_m)
     return {
         "seen_time_s": (
             ("time",),
@@ -108,8 +111,8 @@ def _seen(camera: Camera, run: Mapping[str, Any]) -> dict[str, tuple[tuple[str, 
         ),
         "seen_position_m": (
             ("time", "axis"),
-            camera.seen_position(run["position_m"]),
-            {"units": "m", "long_name": "centre of mass as the camera sees it"},
+            camera.seen_position(tracked),
+            {"units": "m", "long_name": f"{point} as the camera sees it"},
         ),
         "seen_orientation": (
             ("time", "wxyz"),

@@ -206,6 +206,7 @@ def made(**changes: Any) -> Diagnosis:
                 np.array([[1.0, 4.0, 1.1], [NAN, NAN, NAN], [0.9, 2.5, 1.0], [0.8, 1.2, 0.9]]),
             ),
         ),
+        "tracked_point": "body_centre",
         "missing_wrench": wrench(),
         "overlays": tuple(overlays),
         "floors": tuple(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path as File
 from typing import Any
@@ -133,7 +134,9 @@ def test_the_answer_does_not_depend_on_the_number_of_threads(dragged: Diagnosis)
 
 def check_pasted(diagnosis: Diagnosis, folder: File) -> None:
     """Run each trial with the effects as they are pasted, and compare what is left with what the ranking states."""
-    dataset = diagnosis.dataset
+    point = diagnosis.tracked_point
+    assert f'# [camera] tracked_point = "{point}"' in diagnosis.effects_toml().splitlines()
+    dataset = replace(diagnosis.dataset, sensor=replace(diagnosis.dataset.sensor, tracked_point=point))
     comparison = Comparison(dataset, Simulator(dataset, 1))
     comparison.simulator.step_s = [floor.step_s for floor in diagnosis.floors]
     comparison._start()
@@ -171,11 +174,26 @@ def test_the_pasted_effect_gives_the_gap_that_the_report_states(dragged: Diagnos
 
 @pytest.mark.parametrize(
     ("name", "vector"),
-    [("stray_field_gradient", (0.0, 0.04, 0.0, 0.0)), ("camera_calibration", (1.02, 5.0, 2e-4, 0.0, 0.0))],
+    [
+        ("stray_field_gradient", (0.0, 0.04, 0.0, 0.0)),
+        ("camera_calibration", (1.02, 5.0, 2e-4, 0.0, 0.0)),
+        ("center_of_mass_offset", (0.0, 2.5e-5, 0.0)),
+    ],
 )
 def test_a_pasted_effect_of_several_numbers_does_so_too(name: str, vector: tuple[float, ...], tmp_path: File) -> None:
     diagnosis = diagnose(measure(plan(), (get(name).from_vector(vector),)), effects=(name,), jobs=2)
     assert [effect.name for effect in diagnosis.effects] == [name]
+    check_pasted(diagnosis, tmp_path)
+
+
+def test_a_pasted_effect_is_seen_at_the_point_that_was_tracked(tmp_path: File) -> None:
+    bare = plan()
+    planned = replace(bare, sensor=replace(bare.sensor, tracked_point="centre_of_mass"))
+    truth = get("center_of_mass_offset").from_vector((0.0, 2.5e-5, 0.0))
+    # What is measured says nothing of the point.
+    dataset = replace(measure(planned, (truth,)), sensor=bare.sensor)
+    diagnosis = diagnose(dataset, effects=("center_of_mass_offset",), jobs=2)
+    assert diagnosis.tracked_point == json.loads(diagnosis.to_json())["tracked_point"] == "centre_of_mass"
     check_pasted(diagnosis, tmp_path)
 
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 
 from tumblers import diagnose
+from tumblers.camera import TrackedPoint
 from tumblers.dataset import Dataset
-from tumblers.dataset.sensor import TrackedPoint
 from tumblers.diagnosis.tracked_point import with_tracked_point
 from tumblers.effects.base import Effect
 from tumblers.effects.center_of_mass_offset import CenterOfMassOffset

@@ -172,18 +172,11 @@ def _start(scenario: Scenario) -> State:
 def _poses(scenario: Scenario, laws: Sequence[Law], states: Sequence[State]) -> Poses:
     orientation = np.stack([state["seen_orientation"] for state in states])
     position = np.stack([state["seen_position_m"] for state in states])
-    position = position - _turned(orientation, np.asarray(scenario.robot.center_of_mass_m))
+    camera = scenario.camera
+    position = camera.tracked_position(position, orientation, scenario.robot.center_of_mass_m)
     for law in laws:
         position = law.seen(position)
-    camera = scenario.camera
     return Poses(camera.seen_position(position), _continuous(camera.seen_orientation(orientation)))
-
-
-def _turned(orientation: NDArray[np.float64], vector: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return a body vector in the substrate frame for each unit quaternion, shape (n, 3)."""
-    w, u = orientation[:, :1], orientation[:, 1:]
-    across = 2.0 * np.cross(u, vector)
-    return np.asarray(vector + w * across + np.cross(u, across))
 
 
 def _continuous(orientation: NDArray[np.float64]) -> NDArray[np.float64]:

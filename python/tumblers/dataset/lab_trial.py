@@ -150,4 +150,5 @@ class LabTrial:
                 gravity_m_per_s2=self.gravity_m_per_s2,
             ),
             model=dataset.model if model is None else model,
+            camera=dataset.sensor.camera,
         )

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import hypot
-from typing import Literal, get_args
+from typing import get_args
 
+from ..camera import Camera, TrackedPoint
 from ..check import choice, number, pair
 from ..errors import InputError, show
 
@@ -16,11 +17,9 @@ __all__ = [
     "TYPICAL_POSITION_NOISE_M",
     "Pixel",
     "Sensor",
-    "TrackedPoint",
 ]
 
 Pixel = tuple[float, float]
-TrackedPoint = Literal["body_centre", "centre_of_mass"]
 
 # What stands in a dataset without tracks, for trials that are only proposed.
 TYPICAL_POSITION_NOISE_M = 5.0e-6
@@ -104,6 +103,11 @@ class Sensor:
         put("y_axis_px", _direction("sensor.y_axis_px", self.y_axis_px))
         if self.tracked_point is not None:
             choice("sensor.tracked_point", self.tracked_point, get_args(TrackedPoint))
+
+    @property
+    def camera(self) -> Camera:
+        """The camera of a run that is to be seen as the tracks are: of the point that was tracked."""
+        return Camera() if self.tracked_point is None else Camera(tracked_point=self.tracked_point)
 
     @property
     def x_axis_px(self) -> Pixel:

@@ -194,6 +194,7 @@ class _Conclusion:
         return Diagnosis(
             dataset=self.dataset,
             model=comparison.simulator.model,
+            tracked_point=comparison.dataset.sensor.camera.tracked_point,
             verdict=verdict,
             effects=estimates,
             chosen=chosen.effects,

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..atomic import write_files
+from ..camera import Camera, TrackedPoint
 from ..dataset import Dataset
 from ..effects.base import Effect
 from ..effects.catalogue import file_of
@@ -55,6 +56,8 @@ class Diagnosis:
         What was diagnosed.
     model
         The model's switches that were used.
+    tracked_point
+        What the positions were taken to be of: what the sensor says, or else what was found.
     verdict
         ``no_gap``, ``explained`` or ``unexplained``.
     effects
@@ -81,6 +84,7 @@ class Diagnosis:
 
     dataset: Dataset
     model: Model
+    tracked_point: TrackedPoint
     verdict: Verdict
     effects: tuple[EffectEstimate, ...]
     chosen: tuple[Effect, ...]
@@ -99,7 +103,7 @@ class Diagnosis:
     version: str
 
     def scenario(self, trial: str, step_s: float | None = None) -> Scenario:
-        """Return a trial's scenario with the diagnosed effects in it.
+        """Return a trial's scenario with the diagnosed effects in it, seen at the point that was tracked.
 
         Parameters
         ----------
@@ -116,7 +120,7 @@ class Diagnosis:
         lab = self.dataset.trial(trial)
         floor = next(floor for floor in self.floors if floor.trial == trial)
         base = lab.scenario(self.dataset, floor.step_s if step_s is None else step_s, model=self.model)
-        return replace(base, effects=self.chosen)
+        return replace(base, effects=self.chosen, camera=Camera(tracked_point=self.tracked_point))
 
     @property
     def plots(self) -> Figures:
@@ -134,6 +138,7 @@ class Diagnosis:
         head = [
             "# To be pasted into a scenario. They were found with:",
             *(f'# [model] {f.name} = "{getattr(self.model, f.name)}"' for f in fields(self.model)),
+            f'# [camera] tracked_point = "{self.tracked_point}"',
             f"# [run] step_s = {span}",
             *self._files_needed(),
         ]
@@ -163,6 +168,7 @@ class Diagnosis:
         table: dict[str, Any] = {
             "format": FORMAT,
             "verdict": self.verdict,
+            "tracked_point": self.tracked_point,
             "effects": [
                 {
                     "name": effect.name,

@@ -41,7 +41,6 @@ _PIECE_S = 0.1
 _MOST_ROWS = 500_000
 # Bytes of paths that are kept: a fit often comes back to a point, and the search to a fit.
 _MOST_KEPT = 256_000_000
-_PERFECT = Camera()
 
 Edit = Callable[[Scenario], Scenario]
 Floats = NDArray[np.float64]
@@ -323,13 +322,7 @@ class Simulator:
         places = None if drawn is None or guide is None else guide.behind(drawn.cameras)
         if drawn is None or places is None:
             return trial
-        return trial.guided(*places, self._tracked(run.scenario), drawn.rate_per_s)
-
-    def _tracked(self, scenario: Scenario) -> Floats:
-        """Return the body-fixed place of the tracked point, from the centre of mass, m, shape (3,)."""
-        if self.dataset.sensor.tracked_point == "centre_of_mass":
-            return np.zeros(3)
-        return -np.array(scenario.robot.center_of_mass_m)
+        return trial.guided(*places, _tracked_m(run.scenario), drawn.rate_per_s)
 
     def _possible(self, job: Job) -> Scenario | None:
         with suppress(InputError):
@@ -350,9 +343,7 @@ class Simulator:
         same = np.einsum("ij,ij->i", orientation[1:], orientation[:-1]) >= 0.0
         sign = np.concatenate([[1.0], np.cumprod(np.where(same, 1.0, -1.0))])
         orientation = orientation * sign[:, None]
-        tracked = self._tracked(scenario)
-        if tracked.any():
-            position = position + _turned(orientation, tracked)
+        position = scenario.camera.tracked_position(position, orientation, scenario.robot.center_of_mass_m)
         return Path(
             interval_s=every * scenario.run.fixed_step_s,
             position_m=position,
@@ -361,13 +352,18 @@ class Simulator:
         )
 
 
+def _tracked_m(scenario: Scenario) -> Floats:
+    return scenario.camera.tracked_m(scenario.robot.center_of_mass_m)
+
+
 def _unseen(scenario: Scenario) -> Scenario:
-    return scenario if scenario.camera == _PERFECT else replace(scenario, camera=_PERFECT)
+    camera = scenario.camera
+    return scenario if camera == camera.perfect else replace(scenario, camera=camera.perfect)
 
 
 def _seen(path: Path | None, camera: Camera) -> Path | None:
     """Return a path as a camera sees it."""
-    if path is None or camera == _PERFECT:
+    if path is None or camera == camera.perfect:
         return path
     return Path(
         interval_s=path.interval_s,
@@ -419,9 +415,3 @@ def _rows_per_s(field: object) -> float:
 def _rows_every(scenario: Scenario) -> int:
     longest = 1.0 / _rows_per_s(scenario.field)
     return max(1, min(int(longest / scenario.run.fixed_step_s + 1e-9), scenario.run.steps))
-
-
-def _turned(orientation: Floats, vector: Floats) -> Floats:
-    w, v = orientation[:, :1], orientation[:, 1:]
-    cross = np.cross(v, vector)
-    return np.asarray(vector + 2.0 * (w * cross + np.cross(v, cross)))

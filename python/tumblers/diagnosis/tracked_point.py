@@ -13,8 +13,8 @@ from typing import get_args
 
 import numpy as np
 
+from ..camera import TrackedPoint
 from ..dataset import Dataset
-from ..dataset.sensor import TrackedPoint
 from ..effects.base import Effect
 from ..effects.center_of_mass_offset import CenterOfMassOffset
 from ..progress import OnPhase
