@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from math import log
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 from tumblers import diagnose
+from tumblers.dataset import Outcome
 from tumblers.diagnosis.attribute import REFUSED
 from tumblers.diagnosis.comparison import Comparison, Residual
 from tumblers.diagnosis.contender import Contender, of_fit
@@ -26,6 +28,8 @@ from tumblers.presets import drive
 from .lab import LYING, OFF, UPWARDS, measure, plan, without
 
 Floats = NDArray[np.float64]
+
+NO_CLIMB = Outcome(climbs=False)
 
 
 def fitter_of(trials: int) -> Fitter:
@@ -79,6 +83,50 @@ def test_what_a_single_track_shows_is_not_foretold_by_others_in_which_nothing_ha
     # Left out, the track is as far off as before; the others, in which nothing happens, cannot speak against it.
     assert not foretold([3.9, 0.5, 0.5], [3.9, 0.5, 0.5], fitted=[0.5, 0.5, 0.5])
     assert foretold([3.9, 3.9, 0.5], [3.9, 3.9, 0.5], fitted=[0.5, 0.5, 0.5])
+
+
+def climbs_noted(count: int) -> Fitter:
+    """Return the fitter of trials of which it was noted that the robot climbs, and nothing else."""
+    dataset = plan([(f"t{k}", drive(0.010, 5.0), 0.0) for k in range(count)], duration_s=0.2)
+    return Fitter(Comparison(dataset, Simulator(dataset, 1)))
+
+
+def test_of_climbs_alone_a_right_model_leaves_nothing() -> None:
+    fitter = climbs_noted(11)
+    # One of them is not foretold by a model that is right of the others, as a lapse has it.
+    wrong = wrong_by(fitter, [3.0] + [0.0] * 10)
+    gap = shrink(fitter, wrong)
+    assert gap.noise_floor == 0.0
+    assert gap.after == pytest.approx(np.sqrt(9.0 / 11.0))
+    # The nominal model is right of all of them: nothing was to be shrunk, and this is worse.
+    assert gap.before < 0.1
+    assert gap.shrink.estimate == 0.0
+    best = wrong_by(fitter, [0.0] * 11).residuals[0]
+    right = wrong_by(fitter, [0.0] * 11)
+    assert not is_foretold(fitter, right, wrong, gap, Contender(("an_effect",), None, best, 0.0))
+    assert is_foretold(fitter, wrong, right, shrink(fitter, right), Contender(("an_effect",), None, best, 0.0))
+
+
+def test_a_contradicted_climb_that_is_foretold_with_the_effect_is_a_gap_that_is_closed() -> None:
+    dataset = plan([(f"t{k}", drive(0.010, 5.0), 0.0) for k in range(10)], duration_s=0.2)
+    dataset = replace(dataset, trials=(*dataset.trials, replace(dataset.trials[0], id="not", outcome=NO_CLIMB)))
+    fitter = Fitter(Comparison(dataset, Simulator(dataset, 1)))
+    gap = shrink(fitter, wrong_by(fitter, [0.0] * 11))
+    # Less than 1, which noise would leave of 11 numbers that it moves.
+    assert 0.8 < gap.before < 1.0
+    assert (gap.after, gap.shrink.estimate) == (0.0, 1.0)
+
+
+def test_climbs_beside_tracks_lower_the_floor_by_their_share() -> None:
+    tracks = measure(plan([("a", UPWARDS, 0.0), ("b", UPWARDS, 0.0)], duration_s=0.1))
+    noted = plan([("c", drive(0.010, 5.0), 0.0)], duration_s=0.2)
+    dataset = replace(tracks, trials=(*tracks.trials, *noted.trials))
+    fitter = Fitter(Comparison(dataset, Simulator(dataset, 1)))
+    a, b, _ = fitter.comparison.sizes
+    gap = shrink(fitter, wrong_by(fitter, [1.0, 1.0, 0.0]))
+    assert gap.noise_floor == pytest.approx(np.sqrt((a + b) / (a + b + 1)))
+    # Noise alone is left: no more is to be shrunk.
+    assert gap.after == pytest.approx(gap.noise_floor)
 
 
 def test_a_trial_without_numbers_is_not_left_out() -> None:

@@ -3,7 +3,8 @@
 The trials are dealt into folds, alike conditions to different folds; each fold is left out once, and what all trials
 share is fitted to the others: the effects' parameters, the camera's heading and scale, and how far the nominal numbers
 are off. A clock and an origin are a trial's own, and are fitted to it within their tolerances. With ρ of `robust_cost`
-a gap is `√(Σρ/n)`.
+a gap is `√(Σρ/n)`. Whitened differences have unit variance where noise alone is at work, but for outcomes of yes or no,
+of which a right model leaves nothing: the noise floor is `√(m/n)` of m other numbers.
 """
 
 from __future__ import annotations
@@ -25,17 +26,16 @@ from .result import Gap, Interval
 from .simulator import Job
 from .thresholds import CLEAR
 
-__all__ = ["NOISE_FLOOR", "HeldOut", "folds", "held_out", "is_foretold", "shrink"]
+__all__ = ["HeldOut", "folds", "held_out", "is_foretold", "shrink"]
 
 Floats = NDArray[np.float64]
 
-# Whitened differences have unit variance where noise alone is at work.
-NOISE_FLOOR = 1.0
 _FOLDS = 4
 _EVALUATIONS = 3
 _RESAMPLES = 400
-# A right model's mean square on trials that no fit has seen, and how much worse than nominal it may be there.
-_FORETOLD, _NO_WORSE = 1.5, 1.02
+# A right model's mean square on trials that no fit has seen, above the noise's, and how much worse than nominal it may
+# be there.
+_FORETOLD, _NO_WORSE = 0.5, 1.02
 # A track that holds more than this share of what speaks for an effect is its only witness.
 _ALONE = 0.95
 
@@ -159,7 +159,7 @@ def is_foretold(fitter: Fitter, nominal: HeldOut, chosen: HeldOut, gap: Gap, bes
     """
     if not gap.held_out_trials:
         return False
-    if gap.after**2 <= _FORETOLD:
+    if gap.after**2 - gap.noise_floor**2 <= _FORETOLD:
         return True
     before = [fitter.trial_cost(nominal.residuals[i], i) for i in fitter.trials]
     gains = np.array([max(cost - fitter.trial_cost(best.residual, i), 0.0) for i, cost in enumerate(before)])
@@ -191,14 +191,17 @@ def shrink(fitter: Fitter, chosen: HeldOut, seed: int = 0) -> Gap:
     before, nuisances, after = np.sqrt(costs.sum(axis=1) / max(sizes.sum(), 1.0))
     draws = np.random.default_rng(seed).integers(0, len(counted), (_RESAMPLES, len(counted)))
     drawn = np.sqrt(costs[:, draws].sum(axis=2) / np.maximum(sizes[draws].sum(axis=1), 1.0))
-    low, high = np.quantile(_shrunk(drawn[0], drawn[2]), [0.05, 0.95])
+    noisy = np.array([comparison.floors[i].noisy for i in counted], dtype=np.float64)
+    floor = float(np.sqrt(noisy.sum() / max(sizes.sum(), 1.0)))
+    floors = np.sqrt(noisy[draws].sum(axis=1) / np.maximum(sizes[draws].sum(axis=1), 1.0))
+    low, high = np.quantile(_shrunk(drawn[0], drawn[2], floors), [0.05, 0.95])
     # Of what was not measured there is no gap.
     by_trial = np.sqrt(np.divide(costs, sizes, out=np.full_like(costs, np.nan), where=sizes > 0.0))
     ids = [comparison.dataset.trials[i].id for i in counted]
     left_out = [comparison.dataset.trials[i].id for fold in folds(fitter) for i in fold]
-    estimate = float(_shrunk(np.array(before), np.array(after)))
+    estimate = float(_shrunk(np.array(before), np.array(after), np.array(floor)))
     return Gap(
-        noise_floor=NOISE_FLOOR,
+        noise_floor=floor,
         before=float(before),
         after_nuisance_only=float(nuisances),
         after=float(after),
@@ -208,7 +211,7 @@ def shrink(fitter: Fitter, chosen: HeldOut, seed: int = 0) -> Gap:
     )
 
 
-def _shrunk(before: Floats, after: Floats) -> Floats:
-    gap = before - NOISE_FLOOR
-    share = np.where(gap > 0.0, 1.0 - (after - NOISE_FLOOR) / np.maximum(gap, 1e-12), 0.0)
+def _shrunk(before: Floats, after: Floats, floor: Floats) -> Floats:
+    gap = before - floor
+    share = np.where(gap > 0.0, 1.0 - (after - floor) / np.maximum(gap, 1e-12), 0.0)
     return np.clip(share, 0.0, 1.0)

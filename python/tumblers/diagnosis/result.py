@@ -102,7 +102,8 @@ class Gap:
     Attributes
     ----------
     noise_floor
-        What noise alone would give.
+        What noise alone would give: 1, or less where outcomes of yes or no, of which it leaves nothing, are among the
+        numbers, and 0 of those alone.
     before, after_nuisance_only, after
         For the nominal model and a perfect sensor, with the sensor's nuisances fitted, and with the chosen effects.
     shrink

@@ -90,8 +90,8 @@ _EVENTS = {
 
 # Below this share of the gap an effect is not foretold by trials that were fitted without it.
 _FORETOLD = 0.05
-# A gap that is no more than so much of the noise is closed.
-_CLOSED = 1.2
+# A gap that is no more than so much above what noise gives is closed, sigmas.
+_CLOSED = 0.2
 # Where less than this share of the gap is left once the sensor's nuisances are fitted, that is what effects are about.
 _SLIPS = 0.1
 # And where it is less than this, that they are about that alone is said.
@@ -150,7 +150,7 @@ def headline(diagnosis: Diagnosis) -> str:
         return f"Unexplained: {left}, and {none}."
     partial = " and ".join(f"{phrase.cause}, {phrase.amount.rstrip(',')}" for phrase in phrases)
     fitted = _fitted(diagnosis)
-    if fitted < _CLOSED * gap.noise_floor:
+    if fitted < gap.noise_floor + _CLOSED:
         return (
             f"Unexplained: {left}. It would close, to {_sigmas(fitted)}, if {partial}; but too few trials show it to "
             "hold that against another."
