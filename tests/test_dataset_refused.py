@@ -48,6 +48,7 @@ REFUSED = [
     ("[sensor]", "[sensor]\ny_axis_px = [1]", "sensor.y_axis_px", "a list of 2 numbers"),
     ("[sensor]", "[sensor]\ntime_offset_s = -1", "sensor.time_offset_s", "at least 0"),
     ("[sensor]", "[sensor]\norigin_tolerance_m = -1", "sensor.origin_tolerance_m", "at least 0"),
+    ("[sensor]", "[sensor]\nz_origin_tolerance_m = -1", "sensor.z_origin_tolerance_m", "at least 0"),
     ("[sensor]", "[sensor]\nheading_tolerance_deg = 181", "sensor.heading_tolerance_deg", "at most 180"),
     ("[sensor]", "[sensor]\nscale_tolerance = 1", "sensor.scale_tolerance", "less than 1"),
     ("[sensor]", "[sensor]\ntracked_point = 'nose'", "sensor.tracked_point", "body_centre or centre_of_mass"),

@@ -96,6 +96,7 @@ SENSOR = st.builds(
     y_axis_px=st.tuples(POSITIVE, VALUE),
     time_offset_s=MAYBE | LEAST,
     origin_tolerance_m=LEAST,
+    z_origin_tolerance_m=st.none() | LEAST,
     heading_tolerance_deg=LEAST,
     scale_tolerance=LEAST,
     tracked_point=st.sampled_from([None, "body_centre", "centre_of_mass"]),

@@ -88,17 +88,17 @@ def test_the_derivatives_by_the_nuisances_are_those_of_the_differences(quaternio
     dataset = measure(plan(), quaternions=quaternions)
     comparison = Comparison(dataset, Simulator(dataset, 1))
     # A camera that is off by little counts as one that is not: its products are left out.
-    local, camera = np.array([0.0, 2e-5, -1e-5]), np.zeros(2)
-    steps = np.array([2e-4, 1e-8, 1e-8, 1e-5, 1e-6])
+    local, camera = np.array([0.0, 2e-5, -1e-5, 3e-5]), np.zeros(2)
+    steps = np.array([2e-4, 1e-8, 1e-8, 1e-8, 1e-5, 1e-6])
     for reader, path in zip(comparison.readers, comparison.nominal_paths, strict=True):
         assert path is not None
         columns, here = reader.linearised(path, local, camera), reader.differences(path, local, camera)
         for k, step in enumerate(steps):
-            move = step * np.eye(5)[k]
+            move = step * np.eye(6)[k]
             # A path is linear between its rows: a centred difference would not see its kinks as a forward one does.
             back = -1.0 if k else 0.0
-            ahead = reader.differences(path, local + move[:3], camera + move[3:])
-            behind = reader.differences(path, local + back * move[:3], camera + back * move[3:])
+            ahead = reader.differences(path, local + move[:4], camera + move[4:])
+            behind = reader.differences(path, local + back * move[:4], camera + back * move[4:])
             for name, by in columns.items():
                 wrong = ahead[name] - behind[name]
                 # An angle beyond half a turn comes back from the other side.

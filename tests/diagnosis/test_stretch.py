@@ -40,7 +40,7 @@ def carried_off(trial: LabTrial) -> LabTrial:
 
 def test_a_beginning_is_compared_as_in_the_whole() -> None:
     comparison = compared(seen())
-    local, shared = np.array([1e-3, 2e-6, -3e-6]), np.zeros(2 + SHARED)
+    local, shared = np.array([1e-3, 2e-6, -3e-6, 4e-6]), np.zeros(2 + SHARED)
     shared[:3] = 1e-3, 1e-3, 0.5
     for reader, floor, path in zip(comparison.readers, comparison.floors, comparison.nominal_paths, strict=True):
         assert path is not None

@@ -45,7 +45,7 @@ class PlainFit:
     stretches: Sequence[Stretch]
 
     def residual(self, train: Sequence[int], tolerance: Floats | None) -> tuple[list[Floats | None], Floats, Floats]:
-        """Return the whitened differences by trial, clocks and origins (trials, 3), and what all trials share."""
+        """Return the whitened differences by trial, clocks and origins (trials, 4), and what all trials share."""
         nuisances = self.comparison.nuisances
         local, shared = np.zeros_like(nuisances.local_sigmas), np.zeros_like(nuisances.shared_sigmas)
         if tolerance is not None:
@@ -96,13 +96,13 @@ class PlainFit:
         assert path is not None
         sigmas = self.comparison.nuisances.local_sigmas[trial]
         loss = (clock / sigmas[0]) ** 2
-        wrong = reader.differences(path, np.array([clock, 0.0, 0.0]), np.zeros(2))
+        wrong = reader.differences(path, np.array([clock, 0.0, 0.0, 0.0]), np.zeros(2))
         for name, kept in floor.valid.items():
             values = floor.whiten[name] @ wrong[name][kept]
-            if name in ("x", "y"):
+            if name in ("x", "y", "z"):
                 # What a shift of the origin cannot explain.
                 shift = floor.whiten[name].sum(axis=1)
-                values = values - shift * (shift @ values) / (shift @ shift + sigmas[1] ** -2)
+                values = values - shift * (shift @ values) / (shift @ shift + sigmas[1 + "xyz".index(name)] ** -2)
             loss += float(np.sum(np.minimum(values**2, OUTLIER**2)))
         return loss
 
@@ -112,12 +112,12 @@ class PlainFit:
         assert path is not None
         found = self.stretches[trial].reader.linearised(path, local, shared[:2])
         table = np.concatenate(
-            [np.empty((0, 6)), *(floor.whiten[name] @ found[name][kept] for name, kept in floor.valid.items())]
+            [np.empty((0, 7)), *(floor.whiten[name] @ found[name][kept] for name, kept in floor.valid.items())]
         )
         outcomes = self._outcomes(trial, shared[:2])
-        table = np.vstack([table, np.column_stack([np.zeros((len(outcomes), 5)), outcomes])])
+        table = np.vstack([table, np.column_stack([np.zeros((len(outcomes), 6)), outcomes])])
         numbers = np.zeros_like(floor.tolerance) if held else -floor.tolerance
-        return np.column_stack([table[:, :5], numbers, table[:, 5] - floor.tolerance @ shared[2:]])
+        return np.column_stack([table[:, :6], numbers, table[:, 6] - floor.tolerance @ shared[2:]])
 
     def _improved(self, local: Floats, shared: Floats, train: Sequence[int], held: bool) -> tuple[Floats, Floats]:
         """Return a step of Gauss and Newton's method in all nuisances at once, the least within their bounds."""
@@ -136,14 +136,14 @@ class PlainFit:
         prior = np.diag(1.0 / nuisances.shared_sigmas)
         together = [i for i in tables if i in train]
         moved = np.zeros_like(local)
-        # By columns: what is shared and free, then three of each trial.
-        matrix = [np.hstack([prior, np.zeros((count, 3 * len(together)))])]
+        # By columns: what is shared and free, then four of each trial.
+        matrix = [np.hstack([prior, np.zeros((count, 4 * len(together)))])]
         side = [-shared / nuisances.shared_sigmas]
         for k, i in enumerate(together):
-            block = np.zeros((len(tables[i]) + 3, count + 3 * len(together)))
-            block[:-3, :count] = tables[i][:, 3:-1]
-            block[:-3, count + 3 * k : count + 3 * (k + 1)] = tables[i][:, :3]
-            block[-3:, count + 3 * k : count + 3 * (k + 1)] = np.diag(1.0 / nuisances.local_sigmas[i])
+            block = np.zeros((len(tables[i]) + 4, count + 4 * len(together)))
+            block[:-4, :count] = tables[i][:, 4:-1]
+            block[:-4, count + 4 * k : count + 4 * (k + 1)] = tables[i][:, :4]
+            block[-4:, count + 4 * k : count + 4 * (k + 1)] = np.diag(1.0 / nuisances.local_sigmas[i])
             matrix.append(block)
             side += [-tables[i][:, -1], -local[i] / nuisances.local_sigmas[i]]
         bounds = [nuisances.local_bounds[i] for i in together]
@@ -152,11 +152,11 @@ class PlainFit:
         found = least(np.vstack(matrix), np.concatenate(side), lows, highs)
         change = found[:count]
         for k, i in enumerate(together):
-            moved[i] = found[count + 3 * k : count + 3 * (k + 1)]
+            moved[i] = found[count + 4 * k : count + 4 * (k + 1)]
         for i, table in tables.items():
             if i not in train:
-                own = np.vstack([table[:, :3], np.diag(1.0 / nuisances.local_sigmas[i])])
-                wrong = np.concatenate([-table[:, -1] - table[:, 3:-1] @ change, -local[i] / nuisances.local_sigmas[i]])
+                own = np.vstack([table[:, :4], np.diag(1.0 / nuisances.local_sigmas[i])])
+                wrong = np.concatenate([-table[:, -1] - table[:, 4:-1] @ change, -local[i] / nuisances.local_sigmas[i]])
                 most = nuisances.local_bounds[i]
                 moved[i] = least(own, wrong, -most - local[i], most - local[i])
         return local + moved, shared + change

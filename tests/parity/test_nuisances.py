@@ -98,7 +98,7 @@ def test_with_a_perfect_sensor_nothing_is_fitted() -> None:
     comparison = Comparison(off(), Simulator(off(), 1))
     paths = comparison.nominal_paths
     plain = PlainFit(comparison, paths, comparison._stretches(1.0))
-    local, shared = np.zeros((len(paths), 3)), np.zeros(2 + SHARED)
+    local, shared = np.zeros((len(paths), 4)), np.zeros(2 + SHARED)
     found = comparison.residual(paths, fit_nuisances=False)
     assert_same(found, (plain.whitened(local, shared), local, shared))
 
@@ -118,7 +118,7 @@ def test_what_is_no_path_is_refused() -> None:
     (stretch, *_), path = comparison._stretches(1.0), comparison.nominal_paths[0]
     assert path is not None
     (interval, clock, poses), outcomes = stretch.seen(path)
-    local, shared = [0.0] * 3, [0.0] * (2 + SHARED)
+    local, shared = [0.0] * 4, [0.0] * (2 + SHARED)
     for run, words in (
         (((interval, clock, poses[:1]), outcomes), "1 poses"),
         (((0.0, clock, poses), outcomes), "0 s apart"),

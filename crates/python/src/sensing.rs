@@ -1,7 +1,7 @@
 //! What was measured in a trial, and its comparison with paths.
 
 use crate::convert::{choose, quaternion, refused, table};
-use ::sensing::{Angle, Camera, Channel, Column, Measured, Path, Seen, Tolerances, Whiten};
+use ::sensing::{Angle, Camera, Channel, Column, LOCAL, Measured, Path, Seen, Tolerances, Whiten};
 use nalgebra::UnitQuaternion;
 use numpy::ndarray::ArrayView1;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
@@ -70,7 +70,7 @@ impl PyMeasured {
         &self,
         py: Python<'py>,
         run: PySeen<'py>,
-        local: [f64; 3],
+        local: [f64; LOCAL],
         shared: Vec<f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let seen = seen(run.0.as_ref(), &run.1)?;
@@ -97,8 +97,8 @@ pub fn compare<'py>(
     py: Python<'py>,
     trials: Vec<PyRef<'py, PyMeasured>>,
     runs: Vec<Vec<PySeen<'py>>>,
-    local_bounds: Vec<[f64; 3]>,
-    local_sigmas: Vec<[f64; 3]>,
+    local_bounds: Vec<[f64; LOCAL]>,
+    local_sigmas: Vec<[f64; LOCAL]>,
     shared: (Vec<f64>, Vec<f64>, Vec<f64>),
     train: Vec<bool>,
     outcome_weight: f64,

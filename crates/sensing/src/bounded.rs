@@ -12,7 +12,8 @@
 //! not count follows what the others say.
 
 use crate::SensingError;
-use nalgebra::{DMatrix, DVector, Matrix3, Matrix3xX, Vector3};
+use crate::measured::LOCAL;
+use nalgebra::{DMatrix, DVector, Matrix4, Matrix4xX, Vector4};
 
 /// Rounds for each number, after which what is wrong still is clamped: some ten in all are usual.
 const ROUNDS: usize = 20;
@@ -55,26 +56,26 @@ impl Limited {
 /// A trial's own.
 pub(crate) struct Block {
     /// `H`, `B` and `h`.
-    pub own: Matrix3<f64>,
-    pub by_shared: Matrix3xX<f64>,
-    pub slope: Vector3<f64>,
+    pub own: Matrix4<f64>,
+    pub by_shared: Matrix4xX<f64>,
+    pub slope: Vector4<f64>,
     /// Bounds of the change.
-    pub bounds: [[f64; 2]; 3],
+    pub bounds: [[f64; 2]; LOCAL],
     /// Whether the trial has a say in what all share.
     pub counted: bool,
 }
 
 /// A block whose free changes are eliminated: `l = -inverse (slope + by_shared c)`, those that are held included.
 struct Eliminated {
-    inverse: Matrix3<f64>,
-    by_shared: Matrix3xX<f64>,
-    slope: Vector3<f64>,
-    held: Vector3<f64>,
+    inverse: Matrix4<f64>,
+    by_shared: Matrix4xX<f64>,
+    slope: Vector4<f64>,
+    held: Vector4<f64>,
 }
 
 impl Block {
-    fn eliminated(&self, limits: &[Limited; 3]) -> Option<Eliminated> {
-        let held = Vector3::from_fn(|k, _| limits[k].held.unwrap_or(0.0));
+    fn eliminated(&self, limits: &[Limited; LOCAL]) -> Option<Eliminated> {
+        let held = Vector4::from_fn(|k, _| limits[k].held.unwrap_or(0.0));
         let (mut own, mut by_shared, mut slope) = (self.own, self.by_shared.clone(), self.slope + self.own * held);
         for (k, _) in limits.iter().enumerate().filter(|(_, limit)| limit.held.is_some()) {
             own.row_mut(k).fill(0.0);
@@ -88,7 +89,7 @@ impl Block {
 }
 
 /// The changes of what all share and of each trial's own.
-pub(crate) type Step = (DVector<f64>, Vec<Option<Vector3<f64>>>);
+pub(crate) type Step = (DVector<f64>, Vec<Option<Vector4<f64>>>);
 
 /// The least of the objective, with `N`, `n` and the bounds of what all share.
 pub(crate) fn least(
@@ -98,10 +99,10 @@ pub(crate) fn least(
     bounds: &[[f64; 2]],
 ) -> Result<Step, SensingError> {
     let mut shared: Vec<Limited> = bounds.iter().map(|ends| Limited::new(*ends)).collect();
-    let mut own: Vec<[Limited; 3]> =
-        blocks.iter().map(|block| block.as_ref().map_or([[0.0; 2]; 3], |b| b.bounds).map(Limited::new)).collect();
+    let mut own: Vec<[Limited; LOCAL]> =
+        blocks.iter().map(|block| block.as_ref().map_or([[0.0; 2]; LOCAL], |b| b.bounds).map(Limited::new)).collect();
     let (mut fewest, mut patience) = (usize::MAX, PATIENCE);
-    for _ in 0..ROUNDS * (shared.len() + 3 * own.len()) {
+    for _ in 0..ROUNDS * (shared.len() + LOCAL * own.len()) {
         let step = at_these(blocks, normal, slope, &shared, &own)?;
         let mut wrong = wrong(blocks, normal, slope, &step, &mut shared, &mut own);
         let Some((last, end)) = wrong.pop() else { return Ok(step) };
@@ -132,7 +133,7 @@ fn at_these(
     normal: &DMatrix<f64>,
     slope: &DVector<f64>,
     shared: &[Limited],
-    own: &[[Limited; 3]],
+    own: &[[Limited; LOCAL]],
 ) -> Result<Step, SensingError> {
     let (mut normal, mut right) = (normal.clone(), -slope);
     let mut parts = Vec::with_capacity(blocks.len());
@@ -172,7 +173,7 @@ fn wrong<'a>(
     slope: &DVector<f64>,
     (change, moved): &Step,
     shared: &'a mut [Limited],
-    own: &'a mut [[Limited; 3]],
+    own: &'a mut [[Limited; LOCAL]],
 ) -> Vec<(&'a mut Limited, Option<f64>)> {
     let mut by_shared = slope + normal * change;
     let mut found = Vec::new();
@@ -216,18 +217,18 @@ mod tests {
             trials in 1_usize..40,
             alike in 0.0..1.0_f64,
             tight in 0.01..3.0_f64,
-            values in prop::collection::vec(-1.0..1.0_f64, 40 * 6 * 6),
+            values in prop::collection::vec(-1.0..1.0_f64, 40 * 7 * 7),
         ) {
-            // Two shared numbers; six numbers measured in each trial, all columns more or less alike, as those of a clock,
+            // Two shared numbers; seven numbers measured in each trial, all columns more or less alike, as those of a clock,
             // an origin and a scale are on a straight path. Every fifth trial has no say, every seventh no path.
             let mut normal = DMatrix::identity(2, 2) * 0.1;
             let mut slope = DVector::zeros(2);
             let mut blocks = Vec::new();
             for t in 0..trials {
-                let value = |row: usize, k: usize| values[(t * 6 + row) * 6 + k];
-                let a = DMatrix::from_fn(6, 5, |row, k| alike * value(row, 0) + (1.0 - alike) * value(row, k));
-                let wrong = DVector::from_fn(6, |row, _| 5.0 * value(row, 5));
-                let (own, common) = (a.columns(2, 3), a.columns(0, 2));
+                let value = |row: usize, k: usize| values[(t * 7 + row) * 7 + k];
+                let a = DMatrix::from_fn(7, 6, |row, k| alike * value(row, 0) + (1.0 - alike) * value(row, k));
+                let wrong = DVector::from_fn(7, |row, _| 5.0 * value(row, 6));
+                let (own, common) = (a.columns(2, LOCAL), a.columns(0, 2));
                 let counted = t % 5 != 4;
                 if counted && t % 7 != 6 {
                     normal += common.transpose() * common;
@@ -235,10 +236,10 @@ mod tests {
                 }
                 let held = if t % 3 == 2 { 0.0 } else { tight };
                 blocks.push((t % 7 != 6).then(|| Block {
-                    own: (own.transpose() * own).fixed_view::<3, 3>(0, 0) + Matrix3::identity() * 0.1,
-                    by_shared: (own.transpose() * common).fixed_rows::<3>(0).into_owned(),
-                    slope: (own.transpose() * &wrong).fixed_rows::<3>(0).into_owned(),
-                    bounds: [[-tight, 0.5 * tight], [-held, held], [-0.3 * tight, tight]],
+                    own: (own.transpose() * own).fixed_view::<LOCAL, LOCAL>(0, 0) + Matrix4::identity() * 0.1,
+                    by_shared: (own.transpose() * common).fixed_rows::<LOCAL>(0).into_owned(),
+                    slope: (own.transpose() * &wrong).fixed_rows::<LOCAL>(0).into_owned(),
+                    bounds: [[-tight, 0.5 * tight], [-held, held], [-0.3 * tight, tight], [-tight, tight]],
                     counted,
                 }));
             }
@@ -262,7 +263,7 @@ mod tests {
             }
             for (t, block) in blocks.iter().enumerate() {
                 let Some(block) = block else { continue };
-                for k in 0..3 {
+                for k in 0..LOCAL {
                     let ([low, high], value) = (block.bounds[k], step.1[t].unwrap()[k]);
                     prop_assert!((low - 1e-9..=high + 1e-9).contains(&value));
                     for other in [low, high, value - 1e-4, value + 1e-4] {
@@ -279,10 +280,10 @@ mod tests {
     fn what_is_shared_and_held_leaves_the_rest_to_the_trial_s_own() {
         // One column for both: held at 0, the shared number leaves the trial's own to follow.
         let block = Block {
-            own: Matrix3::from_diagonal(&Vector3::new(10_000.0, 1.0, 1.0)),
-            by_shared: Matrix3xX::from_column_slice(&[-7_100.0, 0.0, 0.0]),
-            slope: Vector3::new(3_500.0, 0.0, 0.0),
-            bounds: [[-1.0, 1.0]; 3],
+            own: Matrix4::from_diagonal(&Vector4::new(10_000.0, 1.0, 1.0, 1.0)),
+            by_shared: Matrix4xX::from_column_slice(&[-7_100.0, 0.0, 0.0, 0.0]),
+            slope: Vector4::new(3_500.0, 0.0, 0.0, 0.0),
+            bounds: [[-1.0, 1.0]; LOCAL],
             counted: true,
         };
         let (normal, slope) = (DMatrix::from_element(1, 1, 10_083.0), DVector::from_element(1, 4_970.0));

@@ -51,16 +51,17 @@ impl Channel {
         }
     }
 
-    /// The derivatives of `wrong` by the origin `(x, y)`, the camera's heading and its scale, for a pose of the model.
+    /// The derivatives of `wrong` by the origin `(x, y, z)`, the camera's heading and its scale, for a pose of the model.
     #[inline]
-    pub fn by_sensor(&self, pose: &Pose) -> [f64; 4] {
+    pub fn by_sensor(&self, pose: &Pose) -> [f64; 5] {
         let (x, y) = (pose.position.x, pose.position.y);
         match self {
-            Channel::Place(0, _) => [-1.0, 0.0, y, -x],
-            Channel::Place(1, _) => [0.0, -1.0, -x, -y],
-            Channel::Place(..) | Channel::Tilt(_) => [0.0; 4],
-            Channel::Heading(_) => [0.0, 0.0, -pose.tilt().cos(), 0.0],
-            Channel::Turn(angle, _) => [0.0, 0.0, -pose.upward()[*angle as usize], 0.0],
+            Channel::Place(0, _) => [-1.0, 0.0, 0.0, y, -x],
+            Channel::Place(1, _) => [0.0, -1.0, 0.0, -x, -y],
+            Channel::Place(..) => [0.0, 0.0, -1.0, 0.0, 0.0],
+            Channel::Tilt(_) => [0.0; 5],
+            Channel::Heading(_) => [0.0, 0.0, 0.0, -pose.tilt().cos(), 0.0],
+            Channel::Turn(angle, _) => [0.0, 0.0, 0.0, -pose.upward()[*angle as usize], 0.0],
         }
     }
 }

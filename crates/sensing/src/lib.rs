@@ -30,7 +30,7 @@ pub use channel::{Angle, Channel};
 pub use comparison::{Compared, compare};
 pub use error::SensingError;
 pub use loss::{FAR, HUBER};
-pub use measured::{CLOCK_STEP, Column, Measured};
+pub use measured::{CLOCK_STEP, Column, LOCAL, Measured};
 pub use nuisances::Nuisances;
 pub use path::{END_ROWS, Path};
 pub use pose::Pose;

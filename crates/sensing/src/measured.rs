@@ -39,8 +39,11 @@ pub struct Measured {
     shifts: Vec<Vec<f64>>,
 }
 
-/// Derivatives by the clock, the origin `(x, y)`, the camera's heading and scale, and the difference.
-pub type Row = [f64; 6];
+/// How many nuisances are a trial's own: its clock, and its origin in `x`, `y` and `z`.
+pub const LOCAL: usize = 4;
+
+/// Derivatives by the clock, the origin `(x, y, z)`, the camera's heading and scale, and the difference.
+pub type Row = [f64; 7];
 
 impl Measured {
     /// Measurements of the columns' numbers, then of `outcomes` scaled ones.
@@ -95,12 +98,12 @@ impl Measured {
     /// The whitened differences: of the columns, then of the outcomes, `[constant, by the camera's scale]` each.
     ///
     /// `shared` has the camera's heading and scale, then how far the nominal numbers are off.
-    pub fn whitened(&self, path: &Path, outcomes: &[[f64; 2]], local: &[f64; 3], shared: &[f64]) -> Vec<f64> {
-        let camera = Camera::new(shared[0], shared[1]);
+    pub fn whitened(&self, path: &Path, outcomes: &[[f64; 2]], local: &[f64; LOCAL], shared: &[f64]) -> Vec<f64> {
+        let (camera, origin) = (Camera::new(shared[0], shared[1]), [local[1], local[2], local[3]]);
         let mut rows: Vec<[f64; 1]> = Vec::with_capacity(self.tracked() + self.outcomes);
         let mut looks: Looks<'_, Pose> = Looks::new();
         for column in &self.columns {
-            let seen = looks.at(&column.times, |time| path.at(time + local[0]).through(&camera, [local[1], local[2]]));
+            let seen = looks.at(&column.times, |time| path.at(time + local[0]).through(&camera, origin));
             let wrong: Vec<[f64; 1]> =
                 seen.iter().enumerate().map(|(n, seen)| [column.channel.wrong(n, seen)]).collect();
             column.whiten.apply(&wrong, &mut rows);
@@ -111,9 +114,9 @@ impl Measured {
     }
 
     /// The whitened differences with their derivatives by the sensor's nuisances, the nominal numbers as they are.
-    pub fn linearised(&self, path: &Path, outcomes: &[[f64; 2]], local: &[f64; 3], camera: &Camera) -> Vec<Row> {
+    pub fn linearised(&self, path: &Path, outcomes: &[[f64; 2]], local: &[f64; LOCAL], camera: &Camera) -> Vec<Row> {
         let mut rows = Vec::with_capacity(self.tracked() + self.outcomes);
-        let origin = [local[1], local[2]];
+        let origin = [local[1], local[2], local[3]];
         let mut looks: Looks<'_, [Pose; 3]> = Looks::new();
         for column in &self.columns {
             let seen = looks.at(&column.times, |time| {
@@ -126,18 +129,18 @@ impl Measured {
                 .enumerate()
                 .map(|(n, [pose, now, later])| {
                     let (wrong, then) = (column.channel.wrong(n, now), column.channel.wrong(n, later));
-                    let [x, y, heading, scale] = column.channel.by_sensor(pose);
-                    [(then - wrong) / CLOCK_STEP, x, y, heading, scale, wrong]
+                    let [x, y, z, heading, scale] = column.channel.by_sensor(pose);
+                    [(then - wrong) / CLOCK_STEP, x, y, z, heading, scale, wrong]
                 })
                 .collect();
             column.whiten.apply(&raw, &mut rows);
         }
-        rows.extend(outcomes.iter().map(|line| [0.0, 0.0, 0.0, 0.0, 0.0, line[0] + line[1] * camera.scale]));
+        rows.extend(outcomes.iter().map(|line| [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, line[0] + line[1] * camera.scale]));
         rows
     }
 
     /// The best of some offsets of the clock: a body that snaps over makes several minima.
-    pub fn clock(&self, path: &Path, bound: f64, sigmas: &[f64; 3]) -> f64 {
+    pub fn clock(&self, path: &Path, bound: f64, sigmas: &[f64; LOCAL]) -> f64 {
         if bound == 0.0 || self.columns.iter().all(|column| column.times.is_empty()) {
             return 0.0;
         }
@@ -164,13 +167,13 @@ impl Measured {
         clock
     }
 
-    fn clock_losses(&self, path: &Path, clocks: &[f64; 7], sigmas: &[f64; 3]) -> [f64; 7] {
+    fn clock_losses(&self, path: &Path, clocks: &[f64; 7], sigmas: &[f64; LOCAL]) -> [f64; 7] {
         let mut losses = clocks.map(|clock| (clock / sigmas[0]).powi(2));
         let perfect = Camera::new(0.0, 0.0);
         let mut looks: Looks<'_, [Pose; 7]> = Looks::new();
         for (column, shift) in self.columns.iter().zip(&self.shifts) {
             let seen =
-                looks.at(&column.times, |time| clocks.map(|clock| path.at(time + clock).through(&perfect, [0.0; 2])));
+                looks.at(&column.times, |time| clocks.map(|clock| path.at(time + clock).through(&perfect, [0.0; 3])));
             let wrong: Vec<[f64; 7]> = seen
                 .iter()
                 .enumerate()
@@ -179,9 +182,13 @@ impl Measured {
             let mut rows = Vec::with_capacity(wrong.len());
             column.whiten.apply(&wrong, &mut rows);
             // What a shift of the origin cannot explain.
-            let weight = dot(shift, shift) + sigmas[1].powi(-2);
-            let along: [f64; 7] =
-                std::array::from_fn(|k| shift.iter().zip(&rows).map(|(s, row)| s * row[k]).sum::<f64>() / weight);
+            let along: [f64; 7] = match column.channel {
+                Channel::Place(axis, _) => {
+                    let weight = dot(shift, shift) + sigmas[1 + axis].powi(-2);
+                    std::array::from_fn(|k| shift.iter().zip(&rows).map(|(s, row)| s * row[k]).sum::<f64>() / weight)
+                }
+                _ => [0.0; 7],
+            };
             for (n, row) in rows.iter().enumerate() {
                 let by = shift.get(n).copied().unwrap_or(0.0);
                 for k in 0..losses.len() {
@@ -195,7 +202,7 @@ impl Measured {
 
 /// The whitened change of a column with a shift of all its numbers; none where the origin does not move it.
 fn shift(column: &Column) -> Vec<f64> {
-    if !matches!(column.channel, Channel::Place(0 | 1, _)) {
+    if !matches!(column.channel, Channel::Place(..)) {
         return Vec::new();
     }
     let mut rows = Vec::with_capacity(column.times.len());

@@ -13,15 +13,13 @@
 
 use crate::bounded::{Block, least};
 use crate::loss::{huber, weight};
-use crate::measured::{Measured, dot};
+use crate::measured::{LOCAL, Measured, dot};
 use crate::{Camera, Path, Seen, SensingError, Tolerances};
-use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix4, Vector4};
 use rayon::prelude::*;
 use std::array::from_fn;
 
 const ITERATIONS: usize = 3;
-/// A trial's own nuisances: its clock, and its origin in `x` and `y`.
-const LOCAL: usize = 3;
 /// The camera's numbers come first of those that all trials share.
 const CAMERA: usize = Camera::COUNT;
 
@@ -29,7 +27,7 @@ const CAMERA: usize = Camera::COUNT;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Nuisances {
     /// Clock (s) and origin (m) by trial.
-    pub local: Vec<[f64; 3]>,
+    pub local: Vec<[f64; LOCAL]>,
     /// The camera's heading (rad) and scale, then how far the nominal numbers are off.
     pub shared: Vec<f64>,
 }
@@ -41,7 +39,7 @@ impl Nuisances {
         if let Some(off) = held {
             shared[CAMERA..].copy_from_slice(off);
         }
-        Self { local: vec![[0.0; 3]; trials], shared }
+        Self { local: vec![[0.0; LOCAL]; trials], shared }
     }
 }
 
@@ -94,10 +92,10 @@ impl Problem<'_> {
         for (i, products) in products.iter().enumerate() {
             let counted = self.train[i];
             blocks.push(products.as_ref().map(|products| {
-                let weights = Vector3::from(bounds.local_sigmas[i].map(|sigma| sigma.powi(-2)));
-                let local = Vector3::from(at.local[i]);
+                let weights = Vector4::from(bounds.local_sigmas[i].map(|sigma| sigma.powi(-2)));
+                let local = Vector4::from(at.local[i]);
                 Block {
-                    own: products.fixed_view::<LOCAL, LOCAL>(0, 0) + Matrix3::from_diagonal(&weights),
+                    own: products.fixed_view::<LOCAL, LOCAL>(0, 0) + Matrix4::from_diagonal(&weights),
                     by_shared: products.fixed_rows::<LOCAL>(0).columns(LOCAL, count).into_owned(),
                     slope: products.fixed_view::<LOCAL, 1>(0, LOCAL + count) + weights.component_mul(&local),
                     bounds: from_fn(|k| {

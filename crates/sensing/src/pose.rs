@@ -13,16 +13,16 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// The pose as a camera sees it, its origin at `(x, y)`.
+    /// The pose as a camera sees it, its origin at `(x, y, z)`.
     ///
     /// ```text
-    /// (x, y) = (1 + s) R(ψ) (x, y) + o
+    /// (x, y) = (1 + s) R(ψ) (x, y) + (o_x, o_y),  z = z + o_z
     /// ```
     #[inline]
-    pub fn through(&self, camera: &Camera, origin: [f64; 2]) -> Pose {
+    pub fn through(&self, camera: &Camera, origin: [f64; 3]) -> Pose {
         let size = 1.0 + camera.scale;
         let turned = camera.turn * self.position;
-        let position = Vector3::new(size * turned.x + origin[0], size * turned.y + origin[1], turned.z);
+        let position = Vector3::new(size * turned.x + origin[0], size * turned.y + origin[1], turned.z + origin[2]);
         Pose { position, orientation: camera.turn * self.orientation }
     }
 

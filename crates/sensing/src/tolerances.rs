@@ -1,14 +1,15 @@
 //! How far the nuisances may be off.
 
 use crate::SensingError;
+use crate::measured::LOCAL;
 
 /// Bounds and standard deviations of the nuisances.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tolerances {
     /// By trial, the most of the clock (s) and of the origin (m), either way.
-    pub local_bounds: Vec<[f64; 3]>,
+    pub local_bounds: Vec<[f64; LOCAL]>,
     /// Standard deviations of the same.
-    pub local_sigmas: Vec<[f64; 3]>,
+    pub local_sigmas: Vec<[f64; LOCAL]>,
     /// The least of the camera's heading (rad) and scale, then of the nominal numbers in their tolerances.
     pub shared_low: Vec<f64>,
     /// The most of the same.

@@ -1,7 +1,9 @@
 //! Derivatives against differences, and nuisances that were put in against those that are found.
 
 use proptest::prelude::*;
-use tumblers_sensing::{Angle, Camera, Channel, Column, Measured, Path, Pose, Seen, Tolerances, Whiten, compare};
+use tumblers_sensing::{
+    Angle, Camera, Channel, Column, LOCAL, Measured, Path, Pose, Seen, Tolerances, Whiten, compare,
+};
 
 const INTERVAL: f64 = 1e-2;
 const NOISE_M: f64 = 1e-6;
@@ -25,9 +27,10 @@ fn whiten(count: usize, sigma: f64) -> Whiten {
 }
 
 /// What a sensor reads of a path every 20 ms, by coordinates and angles or by whole orientations.
-fn measured(path: &Path, local: [f64; 3], camera: &Camera, quaternions: bool) -> Measured {
+fn measured(path: &Path, local: [f64; LOCAL], camera: &Camera, quaternions: bool) -> Measured {
     let times: Vec<f64> = (2..80).map(|n| 2e-2 * f64::from(n)).collect();
-    let seen: Vec<Pose> = times.iter().map(|t| path.at(t + local[0]).through(camera, [local[1], local[2]])).collect();
+    let seen: Vec<Pose> =
+        times.iter().map(|t| path.at(t + local[0]).through(camera, [local[1], local[2], local[3]])).collect();
     let place = |k: usize| Channel::Place(k, seen.iter().map(|pose| pose.position[k]).collect());
     let turned = |angle| Channel::Turn(angle, seen.iter().map(|pose| pose.orientation).collect());
     let mut channels = vec![(place(0), NOISE_M), (place(1), NOISE_M), (place(2), NOISE_M)];
@@ -48,8 +51,8 @@ fn measured(path: &Path, local: [f64; 3], camera: &Camera, quaternions: bool) ->
 fn tolerances(trials: usize) -> Tolerances {
     let camera = [2f64.to_radians(), 5e-3];
     Tolerances {
-        local_bounds: vec![[1e-2, 5e-5, 5e-5]; trials],
-        local_sigmas: vec![[5.8e-3, 2.5e-5, 2.5e-5]; trials],
+        local_bounds: vec![[1e-2, 5e-5, 5e-5, 5e-5]; trials],
+        local_sigmas: vec![[5.8e-3, 2.5e-5, 2.5e-5, 2.5e-5]; trials],
         shared_low: vec![-camera[0], -camera[1], -3.0],
         shared_high: vec![camera[0], camera[1], 3.0],
         shared_sigmas: vec![0.5 * camera[0], 0.5 * camera[1], 1.0],
@@ -66,21 +69,21 @@ proptest! {
     ) {
         let rows = poses(turn);
         let path = Path::new(INTERVAL, 0.0, &rows).unwrap();
-        let trial = measured(&path, [1e-3, 1e-5, -1e-5], &Camera::new(0.01, 1e-3), quaternions);
-        let local = [clock, x, -x];
-        let wrong = |local: [f64; 3], heading, scale| trial.whitened(&path, &[], &local, &[heading, scale, 0.0]);
+        let trial = measured(&path, [1e-3, 1e-5, -1e-5, 2e-5], &Camera::new(0.01, 1e-3), quaternions);
+        let local = [clock, x, -x, 0.5 * x];
+        let wrong = |local: [f64; LOCAL], heading, scale| trial.whitened(&path, &[], &local, &[heading, scale, 0.0]);
         let here = wrong(local, heading, scale);
         let found = trial.linearised(&path, &[], &local, &Camera::new(heading, scale));
         // Left out are products of the heading or the scale with what they turn or stretch, at most their own 0.02; a
         // step of the clock that crosses a row meets the next slope, which differs by 2 rad/s in 10 ms, as much.
-        for (k, step) in [5e-5, 1e-8, 1e-8, 1e-6, 1e-6].into_iter().enumerate() {
+        for (k, step) in [5e-5, 1e-8, 1e-8, 1e-8, 1e-6, 1e-6].into_iter().enumerate() {
             let mut moved = local;
             let mut camera = [heading, scale];
-            if k < 3 { moved[k] += step } else { camera[k - 3] += step }
+            if k < LOCAL { moved[k] += step } else { camera[k - LOCAL] += step }
             let there = wrong(moved, camera[0], camera[1]);
             let most = found.iter().map(|row| row[k].abs()).fold(0.0, f64::max);
             for (row, (a, b)) in found.iter().zip(here.iter().zip(&there)) {
-                prop_assert!((row[5] - a).abs() < 1e-9);
+                prop_assert!((row[6] - a).abs() < 1e-9);
                 prop_assert!(((b - a) / step - row[k]).abs() <= 0.021 * most + 1e-6, "{k}: {} {}", (b - a) / step, row[k]);
             }
         }
@@ -88,13 +91,13 @@ proptest! {
 
     #[test]
     fn nuisances_that_were_put_in_are_found(
-        clock in -8e-3..8e-3f64, x in -4e-5..4e-5f64, y in -4e-5..4e-5f64,
+        clock in -8e-3..8e-3f64, x in -4e-5..4e-5f64, y in -4e-5..4e-5f64, z in -4e-5..4e-5f64,
         heading in -0.03..0.03f64, scale in -4e-3..4e-3f64, quaternions: bool,
     ) {
         let rows = [poses(0.2), poses(-0.3)];
         let paths = [Path::new(INTERVAL, 0.0, &rows[0]).unwrap(), Path::new(INTERVAL, 0.0, &rows[1]).unwrap()];
         let camera = Camera::new(heading, scale);
-        let trials = paths.map(|path| measured(&path, [clock, x, y], &camera, quaternions));
+        let trials = paths.map(|path| measured(&path, [clock, x, y, z], &camera, quaternions));
         let run = || paths.map(|path| Seen { path: Some(path), outcomes: Vec::new() }).to_vec();
         let all = compare(&[&trials[0], &trials[1]], &[run(), run()], &tolerances(2), &[true; 2], 1.0, None, true).unwrap();
         prop_assert_eq!(&all[0], &all[1]);
@@ -131,7 +134,7 @@ fn an_outcome_has_the_weight_of_so_many_numbers() {
 fn a_trial_that_was_not_run_has_no_differences_and_moves_no_other() {
     let rows = poses(0.2);
     let path = Path::new(INTERVAL, 0.0, &rows).unwrap();
-    let trial = measured(&path, [2e-3, 1e-5, 0.0], &Camera::new(0.02, 2e-3), false);
+    let trial = measured(&path, [2e-3, 1e-5, 0.0, 0.0], &Camera::new(0.02, 2e-3), false);
     let ran = || Seen { path: Some(path), outcomes: Vec::new() };
     let missing = || Seen { path: None, outcomes: Vec::new() };
     let alone = compare(&[&trial], &[vec![ran()]], &tolerances(1), &[true], 1.0, None, true).unwrap();
@@ -149,7 +152,7 @@ fn what_does_not_belong_together_is_refused() {
     assert!(Path::new(0.0, 0.0, &rows).is_err());
     assert!(Path::new(INTERVAL, f64::NAN, &rows).is_err());
     let path = Path::new(INTERVAL, 0.0, &rows).unwrap();
-    let trial = measured(&path, [0.0; 3], &Camera::new(0.0, 0.0), false);
+    let trial = measured(&path, [0.0; LOCAL], &Camera::new(0.0, 0.0), false);
     let run = vec![Seen { path: Some(path), outcomes: vec![[1.0, 0.0]] }];
     let error = compare(&[&trial], &[run], &tolerances(1), &[true], 1.0, None, true).unwrap_err();
     assert_eq!(error.to_string(), "outcomes: 1 found, 0 expected");

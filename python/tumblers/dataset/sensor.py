@@ -57,6 +57,8 @@ class Sensor:
         How far the track's clock may be off, s; half a frame if None, by `frames_per_second` or the track's own times.
     origin_tolerance_m, heading_tolerance_deg, scale_tolerance
         How far the track's origin (m), heading (degrees) and scale (a fraction) may be off.
+    z_origin_tolerance_m
+        How far the height may be off that the track takes for the substrate's, m; `origin_tolerance_m` if None.
     tracked_point
         What the positions are of: ``body_centre``, the centre of the body's shape, or ``centre_of_mass``. If None, a
         diagnosis takes the shape's centre, unless by the other an offset of the mass alone explains all and is clearly
@@ -77,6 +79,7 @@ class Sensor:
     y_axis_px: Pixel = (0.0, -1.0)
     time_offset_s: float | None = None
     origin_tolerance_m: float = 50e-6
+    z_origin_tolerance_m: float | None = None
     heading_tolerance_deg: float = 2.0
     scale_tolerance: float = 0.005
     tracked_point: TrackedPoint | None = None
@@ -95,6 +98,8 @@ class Sensor:
         if self.time_offset_s is not None:
             put("time_offset_s", number("sensor.time_offset_s", self.time_offset_s, least=0.0))
         put("origin_tolerance_m", number("sensor.origin_tolerance_m", self.origin_tolerance_m, least=0.0))
+        if self.z_origin_tolerance_m is not None:
+            put("z_origin_tolerance_m", number("sensor.z_origin_tolerance_m", self.z_origin_tolerance_m, least=0.0))
         heading = number("sensor.heading_tolerance_deg", self.heading_tolerance_deg, least=0.0, most=180.0)
         put("heading_tolerance_deg", heading)
         put("scale_tolerance", number("sensor.scale_tolerance", self.scale_tolerance, least=0.0, below=1.0))
@@ -108,6 +113,12 @@ class Sensor:
     def camera(self) -> Camera:
         """The camera of a run that is to be seen as the tracks are: of the point that was tracked."""
         return Camera() if self.tracked_point is None else Camera(tracked_point=self.tracked_point)
+
+    @property
+    def origin_tolerances_m(self) -> tuple[float, float, float]:
+        """How far the origin may be off along x, y and z, m."""
+        along = self.origin_tolerance_m
+        return along, along, along if self.z_origin_tolerance_m is None else self.z_origin_tolerance_m
 
     @property
     def x_axis_px(self) -> Pixel:

@@ -88,8 +88,8 @@ def _of_trials(diagnosis: Diagnosis) -> list[str]:
         names = sorted({name.partition(" ")[0] for f in diagnosis.floors for name in f.at_tolerance})
         said.append(
             f"the {' and the '.join(names)} of {', '.join(off)} had to be taken to the end of what [sensor] allows: is "
-            "time zero the field's start, and the origin the robot's start, in each of them? A zero that is off in one "
-            "trial and not in another looks like physics."
+            "time zero the field's start, and the origin the robot's start on the substrate, in each of them? A zero "
+            "that is off in one trial and not in another looks like physics."
         )
     rough = [f.trial for f in diagnosis.floors if f.numerical_sigmas > 1.0]
     if rough:

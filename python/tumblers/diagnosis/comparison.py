@@ -47,7 +47,7 @@ class Residual:
     prior
         Scaled nuisances of the trials, of the camera and of the nominal numbers: what their being off costs.
     local
-        Clock (s) and origin (m) by trial, shape (trials, 3).
+        Clock (s) and origin (x, y, z in m) by trial, shape (trials, 4).
     camera
         Heading (rad) and scale, shape (2,).
     tolerance

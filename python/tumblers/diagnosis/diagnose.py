@@ -340,11 +340,13 @@ def _assumptions(dataset: Dataset, comparison: Comparison, attribution: Attribut
     nominal = ", ".join(f"{name} {100.0 * share:g} %" for name, share in TOLERANCES.items())
     given = "magnetic_torque" in comparison.dataset.model_given
     stated = "as the dataset states" if given else "which the dataset leaves open"
+    along, _, upwards = (f"{1e6 * most:g} µm" for most in sensor.origin_tolerances_m)
+    origin = along if upwards == along else f"{along}, along z {upwards}"
     said = [
         f"The magnetic torque is taken by the scheme '{simulator.model.magnetic_torque}', {stated}.",
         "The robot starts at rest on the substrate, long axis along +y, when the field starts.",
         f"The sensor's nuisances are fitted in every hypothesis: clock within {clock}, origin within "
-        f"{1e6 * sensor.origin_tolerance_m:g} µm, heading within {sensor.heading_tolerance_deg:g}°, scale within "
+        f"{origin}, heading within {sensor.heading_tolerance_deg:g}°, scale within "
         f"{100.0 * sensor.scale_tolerance:g} %. Larger ones are the effect camera_calibration, the same in all trials.",
         "A substrate that is tilted, rough or sticky is so alike under every trial's start. A friction that drifts "
         f"does so anew, and alike, in every trial, which is expected in {100.0 * FORM_SHARE:g} % of the cases.",

@@ -50,11 +50,11 @@ class Nudge(NamedTuple):
         rate_per_s
             How fast, 1/s.
         local
-            The trial's clock (s) and origin (x, y in m), shape (3,).
+            The trial's clock (s) and origin (x, y, z in m), shape (4,).
         camera
             Heading (rad) and scale, shape (2,).
         """
-        (clock, x, y), (heading, scale) = local.tolist(), camera.tolist()
+        (clock, x, y, _), (heading, scale) = local.tolist(), camera.tolist()
         off = Camera(scale=1.0 + scale, heading_deg=degrees(heading), origin_m=(x, y), time_offset_s=clock)
         return cls(rate_per_s, off)
 

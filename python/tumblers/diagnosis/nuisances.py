@@ -52,7 +52,7 @@ class Fitted(NamedTuple):
     Attributes
     ----------
     local
-        Clock (s) and origin (m) by trial, shape (trials, 3).
+        Clock (s) and origin (x, y, z in m) by trial, shape (trials, 4).
     shared
         The camera's heading (rad) and scale, and how far the nominal numbers are off, shape (2 + `SHARED`,).
     wrong
@@ -83,7 +83,7 @@ class NuisanceFit:
     tracked
         Which trials have tracks, shape (trials,).
     local_bounds
-        Tolerances of each trial's clock (s) and origin (m), shape (trials, 3).
+        Tolerances of each trial's clock (s) and origin (m), shape (trials, 4).
     local_sigmas
         Standard deviations of the same.
     shared_bounds
@@ -95,11 +95,11 @@ class NuisanceFit:
     def __init__(self, sensor: Sensor, readers: Sequence[Reader], outcome_weight: float, threads: int = 0) -> None:
         self.outcome_weight, self.threads = outcome_weight, threads
         self.tracked = np.array([len(reader.observed.time_s) > 0 for reader in readers], dtype=np.bool_)
-        self.local_bounds = np.empty((len(readers), 3))
+        self.local_bounds = np.empty((len(readers), len(get_args(Nuisance))))
         for i, reader in enumerate(readers):
             clock = sensor.clock_tolerance_s(reader.observed.frame_interval_s)
-            self.local_bounds[i] = clock, sensor.origin_tolerance_m, sensor.origin_tolerance_m
-        sigmas = self.local_bounds * np.array([_CLOCK_SIGMA, _ORIGIN_SIGMA, _ORIGIN_SIGMA])
+            self.local_bounds[i] = clock, *sensor.origin_tolerances_m
+        sigmas = self.local_bounds * np.array([_CLOCK_SIGMA, _ORIGIN_SIGMA, _ORIGIN_SIGMA, _ORIGIN_SIGMA])
         self.local_sigmas = np.maximum(sigmas, 1e-12)
         camera = np.array([radians(sensor.heading_tolerance_deg), sensor.scale_tolerance])
         # A step is no coarser than the longest, and no finer than ours.
@@ -117,7 +117,7 @@ class NuisanceFit:
         Parameters
         ----------
         local
-            Clock (s) and origin (m) by trial as they were fitted, shape (trials, 3).
+            Clock (s) and origin (m) by trial as they were fitted, shape (trials, 4).
         """
         # At either one: where the truth is far, a motion that repeats has its best now at this end, now at that.
         ends = self._at_end(local)[self.tracked].sum(axis=0)
@@ -136,7 +136,7 @@ class NuisanceFit:
         Parameters
         ----------
         local
-            Clock (s) and origin (m) by trial, shape (trials, 3).
+            Clock (s) and origin (m) by trial, shape (trials, 4).
         """
         ends = self._at_end(local) & self.tracked[:, None] & (self.local_bounds > 0.0)
         return [tuple(name for name, end in zip(get_args(Nuisance), row, strict=True) if end) for row in ends]

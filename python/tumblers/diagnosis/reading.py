@@ -3,7 +3,7 @@
 With the camera's nuisances (clock τ, origin o, heading ψ, scale s, all small) the seen place is
 
 ```text
-(x, y) = (1 + s) R(ψ) (x, y)(t + τ) + o
+(x, y) = (1 + s) R(ψ) (x, y)(t + τ) + (o_x, o_y),  z = z(t + τ) + o_z
 ```
 
 Angles are compared as `measured - model`; of a quaternion, the rotation vector from model to measurement in the body
@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import degrees, log
+from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,7 @@ from .. import _core
 from ..camera import Camera
 from ..dataset.climb import CLIMBED, way_without_slip_m
 from ..dataset.outcome import REST_SHARE
+from ..effects.parameter import Nuisance
 from ..scenario import Scenario
 from .observed import Observed
 from .pose import Path, body_axis, heading_of, nearer_turn, relative_turn, tilt_of
@@ -76,7 +78,7 @@ class Reader:
         path
             The model's.
         local
-            Clock (s) and origin (x, y in m), shape (3,).
+            Clock (s) and origin (x, y, z in m), shape (4,).
         camera
             Heading (rad) and scale, shape (2,).
         """
@@ -94,7 +96,7 @@ class Reader:
         path, other
             Two of the model's.
         """
-        perfect = np.zeros(3), np.zeros(2)
+        perfect = np.zeros(len(get_args(Nuisance))), np.zeros(2)
         before, after = (self.differences(p, *perfect) for p in (path, other))
         if self.observed.orientation is not None:
             names = ("tilt", "twist", "heading")
@@ -198,9 +200,9 @@ class Reader:
         }
 
     def linearised(self, path: Path, local: Floats, camera: Floats) -> dict[str, Floats]:
-        """Return the differences' derivatives by the nuisances and the differences, by channel, shape (n, 6).
+        """Return the differences' derivatives by the nuisances and the differences, by channel, shape (n, 7).
 
-        By the trial's clock and origin (x, y) first, then by the camera's heading and scale; the differences last.
+        By the trial's clock and origin (x, y, z) first, then by the camera's heading and scale; the differences last.
         """
         time = self.observed.time_s
         count = len(time)
@@ -214,17 +216,19 @@ class Reader:
         up = _upward(orientation) if turned else np.empty((count, 3))
         tables: dict[str, Floats] = {}
         for name, values in wrong.items():
-            table = np.zeros((count, 6))
-            table[:, 5] = values[:count]
+            table = np.zeros((count, 7))
+            table[:, 6] = values[:count]
             table[:, 0] = (values[count:] - values[:count]) / _core.CLOCK_STEP_S
             if name == "x":
-                table[:, 1], table[:, 3], table[:, 4] = -1.0, position[:, 1], -position[:, 0]
+                table[:, 1], table[:, 4], table[:, 5] = -1.0, position[:, 1], -position[:, 0]
             elif name == "y":
-                table[:, 2], table[:, 3], table[:, 4] = -1.0, -position[:, 0], -position[:, 1]
+                table[:, 2], table[:, 4], table[:, 5] = -1.0, -position[:, 0], -position[:, 1]
+            elif name == "z":
+                table[:, 3] = -1.0
             elif turned and name in ("tilt", "twist", "heading"):
-                table[:, 3] = -up[:, {"tilt": 0, "twist": 1, "heading": 2}[name]]
+                table[:, 4] = -up[:, {"tilt": 0, "twist": 1, "heading": 2}[name]]
             elif name == "heading":
-                table[:, 3] = -np.cos(tilt_of(body_axis(orientation)))
+                table[:, 4] = -np.cos(tilt_of(body_axis(orientation)))
             tables[name] = table
         return tables
 
@@ -263,7 +267,7 @@ def seen_by(path: Path, time_s: Floats, local: Floats, camera: Floats) -> tuple[
     time_s
         What the sensor's clock says, s.
     local
-        Clock (s) and origin (x, y in m), shape (3,).
+        Clock (s) and origin (x, y, z in m), shape (4,).
     camera
         Heading (rad) and scale, shape (2,).
     """
@@ -274,7 +278,7 @@ def _through(position: Floats, orientation: Floats, local: Floats, camera: Float
     """Return what a sensor reads of poses (n, 3) and (n, 4)."""
     seen = Camera(scale=1.0 + float(camera[1]), heading_deg=degrees(camera[0]))
     position = seen.seen_position(position)
-    position[:, :2] += local[1:]
+    position += local[1:]
     return position, seen.seen_orientation(orientation)
 
 

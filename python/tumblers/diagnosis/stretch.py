@@ -92,7 +92,7 @@ class Stretch:
         path
             The model's.
         local
-            Clock (s) and origin (x, y in m), shape (3,).
+            Clock (s) and origin (x, y, z in m), shape (4,).
         shared
             The camera's heading (rad) and scale, and how far the nominal numbers are off, shape (2 + `SHARED`,).
         """

@@ -7,10 +7,12 @@ nominal numbers at their best, and what these cost, all of them linearised.
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..effects.parameter import Nuisance
 from ..field import TableField
 from ..scenario import Scenario
 from ..surroundings import Surroundings
@@ -116,8 +118,9 @@ def nuisance_columns(comparison: Comparison, residual: Residual, trial: int, pat
     """
     floor = comparison.floors[trial]
     found = comparison.readers[trial].linearised(path, residual.local[trial], residual.camera)
-    parts = [floor.whiten[name] @ found[name][kept, :5] for name, kept in floor.valid.items()]
-    rows = np.concatenate([*parts, np.zeros((len(floor.outcome_scale), 5))])
+    # The last column is the difference itself.
+    parts = [floor.whiten[name] @ found[name][kept, :-1] for name, kept in floor.valid.items()]
+    rows = np.concatenate([*parts, np.zeros((len(floor.outcome_scale), len(get_args(Nuisance)) + 2))])
     sigmas = np.concatenate([comparison.nuisances.local_sigmas[trial], comparison.nuisances.shared_sigmas])
     return np.asarray(np.hstack([rows, -floor.tolerance]) * sigmas, dtype=np.float64)
 

@@ -12,7 +12,7 @@ __all__ = ["FORM_SHARE", "Nuisance", "Parameter"]
 FORM_SHARE = 0.2
 
 # What of each trial's sensor is fitted in every hypothesis, in the order in which a diagnosis keeps it.
-Nuisance = Literal["clock", "origin x", "origin y"]
+Nuisance = Literal["clock", "origin x", "origin y", "origin z"]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
