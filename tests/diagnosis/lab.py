@@ -159,6 +159,17 @@ def without(dataset: Dataset, trial: str, lost: slice) -> Dataset:
     return replace(dataset, trials=trials)
 
 
+def folded(dataset: Dataset, low_deg: float) -> Dataset:
+    """Return a dataset whose headings are those of an axis, within half a turn that begins at an angle."""
+
+    def fold(track: Track) -> Track:
+        heading = (track.channels["heading_deg"] - low_deg) % 180.0 + low_deg
+        return Track(time_s=track.time_s, channels={**track.channels, "heading_deg": heading})
+
+    trials = (replace(t, track=None if t.track is None else fold(t.track)) for t in dataset.trials)
+    return replace(dataset, trials=tuple(trials))
+
+
 def thinned(dataset: Dataset, every: int) -> Dataset:
     """Return a dataset in which one of so many frames is kept of each track."""
 

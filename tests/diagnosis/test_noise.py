@@ -150,6 +150,6 @@ def test_a_change_is_the_difference_of_what_is_wrong_where_no_angle_is_half_a_tu
     ):
         assert path is not None
         assert other is not None
-        before, after = (reader.differences(p, np.zeros(3), np.zeros(2)) for p in (path, other))
+        before, after = (reader.differences(p, np.zeros(4), np.zeros(2)) for p in (path, other))
         for name, values in reader.change(path, other).items():
             assert_allclose(values, np.nan_to_num(before[name] - after[name]), rtol=1e-12, atol=1e-15)

@@ -18,7 +18,7 @@ from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects import get
 from tumblers.model import Model
 
-from .lab import PLANS, UPWARDS, measure, plan, thinned, without
+from .lab import PLANS, UPWARDS, folded, measure, plan, thinned, without
 
 CONSIDERED = ("camera_calibration", "size_error", "substrate_tilt", "field_rolloff")
 
@@ -227,3 +227,19 @@ def test_a_height_from_another_zero_in_each_trial_is_no_gap() -> None:
     # To a lab that knows its height it is one.
     sure = replace(dataset, sensor=replace(dataset.sensor, z_origin_tolerance_m=0.0))
     assert diagnose(sure, effects=names, jobs=2).verdict != "no_gap"
+
+
+@pytest.mark.parametrize("low_deg", [-90.0, 0.0])
+def test_a_camera_that_does_not_know_the_ends_of_an_axis_is_no_gap(low_deg: float) -> None:
+    dataset = folded(measure(plan(), clock_frames=-0.2, origin_m=2e-5), low_deg)
+    found = diagnose(dataset, effects=("size_error", "viscous_drag"), jobs=2)
+    assert found.verdict == "no_gap"
+    assert found.gap.after_nuisance_only < 1.1
+    assert any("which end is which" in said for said in found.assumptions)
+    # What is drawn is within half a turn, in which the model's jumps are none.
+    for overlay in found.overlays:
+        apart = overlay.nominal["heading"] - overlay.measured["heading"]
+        lying = np.abs(overlay.nominal["tilt"]) < 30.0
+        apart = np.abs(apart - 180.0 * np.rint(apart / 180.0))[lying]
+        assert np.nanmax(np.abs(overlay.nominal["heading"])) <= 90.0
+        assert np.nanmax(apart, initial=0.0) < 8.0

@@ -16,7 +16,7 @@ from tumblers.diagnosis.simulator import Job, Simulator
 from tumblers.effects.adhesion_coefficient import AdhesionCoefficient
 from tumblers.field import StaticField
 
-from .lab import OFF, plan
+from .lab import OFF, PLANS, folded, measure, plan
 
 TIME_S = np.arange(30) / 60.0
 
@@ -105,6 +105,30 @@ def test_angles_count_where_every_quaternion_was_lost() -> None:
     assert observed.channels == ("tilt",)
     assert_allclose(observed.values["tilt"], np.radians(tilt))
     assert observed.lost == 0
+
+
+@pytest.mark.parametrize(
+    ("headings_deg", "turn"),
+    [
+        ((-90.0, 3.0, 90.0), np.pi),
+        ((0.0, 3.0, 180.0), np.pi),
+        ((-1.0, 3.0, np.nan), np.pi),
+        # An end that jumps by half a turn as the body tumbles.
+        ((3.0, -177.0, 3.0), 2.0 * np.pi),
+        ((3.0, 181.0, 3.0), 2.0 * np.pi),
+    ],
+)
+def test_headings_within_half_a_turn_are_of_an_axis(headings_deg: tuple[float, ...], turn: float) -> None:
+    (observed,) = observe(tracked(TIME_S[:3], {"heading_deg": np.array(headings_deg)}))
+    assert observed.heading_turn == turn
+
+
+def test_an_axis_is_told_by_the_headings_of_all_trials() -> None:
+    dataset = folded(measure(plan(PLANS[:2], duration_s=0.3)), 0.0)
+    assert [observed.heading_turn for observed in observe(dataset)] == [np.pi] * 2
+    directed = measure(plan(PLANS[:2], duration_s=0.3))
+    mixed = replace(dataset, trials=(dataset.trials[0], directed.trials[1]))
+    assert [observed.heading_turn for observed in observe(mixed)] == [2.0 * np.pi] * 2
 
 
 def test_quaternions_take_the_place_of_angles() -> None:

@@ -12,7 +12,7 @@ import pytest
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
-from tests.diagnosis.lab import measure, plan, thinned, without
+from tests.diagnosis.lab import folded, measure, plan, thinned, without
 from tumblers.dataset import Dataset, Outcome
 from tumblers.diagnosis import built_floors
 from tumblers.diagnosis.comparison import Comparison, Residual
@@ -59,6 +59,11 @@ def sparse() -> Dataset:
     return thinned(off(), 6)
 
 
+def ellipses() -> Dataset:
+    """Return trials in which the camera did not know which end is which."""
+    return folded(off(), -90.0)
+
+
 CASES: dict[str, tuple[Effect, ...]] = {
     "near": (),
     "far": (get("friction_coefficient").from_vector((0.3, 0.0)),),
@@ -78,7 +83,7 @@ def assert_same(native: Residual, plain: tuple[list[Floats | None], Floats, Floa
             assert_allclose(found, expected, rtol=AGREE, atol=AGREE * max(np.abs(expected).max(initial=0.0), 1.0))
 
 
-@pytest.mark.parametrize("lab", [off, turned, rigid, sparse])
+@pytest.mark.parametrize("lab", [off, turned, rigid, sparse, ellipses])
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize(("held", "share"), [(False, 1.0), (True, 1.0), (False, 0.4)])
 def test_the_native_fit_of_nuisances_is_the_plain_one(

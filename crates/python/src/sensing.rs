@@ -7,6 +7,7 @@ use numpy::ndarray::ArrayView1;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use rayon::ThreadPoolBuilder;
+use std::f64::consts::{PI, TAU};
 use std::thread::available_parallelism;
 
 /// One channel: its name, times, measured numbers or quaternions, and the matrix that whitens it.
@@ -23,16 +24,17 @@ type PyCompared<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>, Ve
 enum Kind {
     Place(usize),
     Tilt,
-    Heading,
+    Heading(f64),
     Turn(Angle),
 }
 
-const KINDS: [(&str, Kind); 8] = [
+const KINDS: [(&str, Kind); 9] = [
     ("x", Kind::Place(0)),
     ("y", Kind::Place(1)),
     ("z", Kind::Place(2)),
     ("tilt", Kind::Tilt),
-    ("heading", Kind::Heading),
+    ("heading", Kind::Heading(TAU)),
+    ("axis_heading", Kind::Heading(PI)),
     ("turn_tilt", Kind::Turn(Angle::Tilt)),
     ("turn_twist", Kind::Turn(Angle::Twist)),
     ("turn_heading", Kind::Turn(Angle::Heading)),
@@ -155,7 +157,7 @@ fn channel(kind: Kind, values: &PyReadonlyArray2<'_, f64>) -> PyResult<Channel> 
     Ok(match kind {
         Kind::Place(k) => Channel::Place(k, numbers()),
         Kind::Tilt => Channel::Tilt(numbers()),
-        Kind::Heading => Channel::Heading(numbers()),
+        Kind::Heading(turn) => Channel::Heading(turn, numbers()),
         Kind::Turn(angle) => {
             let turn = |q: ArrayView1<'_, f64>| UnitQuaternion::new_unchecked(quaternion([q[0], q[1], q[2], q[3]]));
             Channel::Turn(angle, values.outer_iter().map(turn).collect())

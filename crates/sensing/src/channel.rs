@@ -21,8 +21,9 @@ pub enum Channel {
     Place(usize, Vec<f64>),
     /// The angle of the long axis above the substrate.
     Tilt(Vec<f64>),
-    /// The angle of the long axis's projection from `+y` towards `-x`.
-    Heading(Vec<f64>),
+    /// The angle of the long axis's projection from `+y` towards `-x`, and after how much it comes back to itself: a whole
+    /// turn of an end, half of one of an axis without ends.
+    Heading(f64, Vec<f64>),
     /// A part of the whole orientation.
     Turn(Angle, Vec<UnitQuaternion<f64>>),
 }
@@ -31,7 +32,7 @@ impl Channel {
     /// Number of frames.
     pub fn frames(&self) -> usize {
         match self {
-            Channel::Place(_, values) | Channel::Tilt(values) | Channel::Heading(values) => values.len(),
+            Channel::Place(_, values) | Channel::Tilt(values) | Channel::Heading(_, values) => values.len(),
             Channel::Turn(_, values) => values.len(),
         }
     }
@@ -42,10 +43,10 @@ impl Channel {
         match self {
             Channel::Place(k, values) => values[frame] - seen.position[*k],
             Channel::Tilt(values) => values[frame] - seen.tilt(),
-            Channel::Heading(values) => {
+            Channel::Heading(turn, values) => {
+                let wrong = values[frame] - seen.heading();
                 // The projection of an axis that stands upright points nowhere.
-                let (sin, cos) = (values[frame] - seen.heading()).sin_cos();
-                sin.atan2(cos) * seen.tilt().cos()
+                (wrong - turn * (wrong / turn).round_ties_even()) * seen.tilt().cos()
             }
             Channel::Turn(angle, values) => seen.turn_to(&values[frame])[*angle as usize],
         }
@@ -60,7 +61,7 @@ impl Channel {
             Channel::Place(1, _) => [0.0, -1.0, 0.0, -x, -y],
             Channel::Place(..) => [0.0, 0.0, -1.0, 0.0, 0.0],
             Channel::Tilt(_) => [0.0; 5],
-            Channel::Heading(_) => [0.0, 0.0, 0.0, -pose.tilt().cos(), 0.0],
+            Channel::Heading(..) => [0.0, 0.0, 0.0, -pose.tilt().cos(), 0.0],
             Channel::Turn(angle, _) => [0.0, 0.0, 0.0, -pose.upward()[*angle as usize], 0.0],
         }
     }

@@ -1,6 +1,7 @@
 //! Derivatives against differences, and nuisances that were put in against those that are found.
 
 use proptest::prelude::*;
+use std::f64::consts::{PI, TAU};
 use tumblers_sensing::{
     Angle, Camera, Channel, Column, LOCAL, Measured, Path, Pose, Seen, Tolerances, Whiten, compare,
 };
@@ -38,7 +39,7 @@ fn measured(path: &Path, local: [f64; LOCAL], camera: &Camera, quaternions: bool
         channels.extend([Angle::Tilt, Angle::Twist, Angle::Heading].map(|angle| (turned(angle), NOISE_RAD)));
     } else {
         channels.push((Channel::Tilt(seen.iter().map(Pose::tilt).collect()), NOISE_RAD));
-        channels.push((Channel::Heading(seen.iter().map(Pose::heading).collect()), NOISE_RAD));
+        channels.push((Channel::Heading(TAU, seen.iter().map(Pose::heading).collect()), NOISE_RAD));
     }
     let columns: Vec<Column> = channels
         .into_iter()
@@ -160,4 +161,16 @@ fn what_does_not_belong_together_is_refused() {
     let mut negative = tolerances(1);
     negative.local_bounds[0][0] = -1e-3;
     assert!(compare(&[&trial], &[], &negative, &[true], 1.0, None, true).is_err());
+}
+
+#[test]
+fn the_heading_of_an_axis_without_ends_is_the_same_after_half_a_turn() {
+    let rows = poses(0.0);
+    let pose = Path::new(INTERVAL, 0.0, &rows).unwrap().at(0.5);
+    for (turn, expected) in [(TAU, [0.1, 0.1 - PI, 0.1]), (PI, [0.1; 3])] {
+        for (more, wrong) in [0.0, PI, TAU].into_iter().zip(expected) {
+            let heading = Channel::Heading(turn, vec![pose.heading() + 0.1 + more]);
+            assert!((heading.wrong(0, &pose) - wrong * pose.tilt().cos()).abs() < 1e-12, "{turn} {more}");
+        }
+    }
 }

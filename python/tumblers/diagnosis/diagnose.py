@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import pi
 from time import perf_counter
 
 import numpy as np
@@ -393,6 +394,10 @@ def _assumptions(dataset: Dataset, comparison: Comparison, attribution: Attribut
         said.append(
             "Of a robot that slides without a field, half of its way is compared, and that it slides as an outcome: "
             "where it catches again is up to the spot."
+        )
+    if any("heading" in one.values and one.heading_turn < 2.0 * pi for one in observed):
+        said.append(
+            "Headings are taken to be of an axis of which nobody knows which end is which: all lie within half a turn."
         )
     if any(np.isnan(column).any() for track in tracks for column in track.channels.values()):
         said.append(

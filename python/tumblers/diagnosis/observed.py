@@ -2,12 +2,16 @@
 
 Of a robot that slides without a field, down a slope that should hold it, the first half of its way is compared, in
 which it gathers speed; that it slides counts as an outcome. Where it catches again is up to the spot.
+
+The heading of a body that tumbles end over end jumps by half a turn each time that it stands upright, if it is of an
+end. A fit of an ellipse does not know which end is which: its headings all lie within half a turn, -90° to 90° or 0° to
+180°, and are those of an axis, which comes back to itself after half a turn.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import radians
+from math import pi, radians
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +30,8 @@ CHANNELS = ("x", "y", "z", "tilt", "heading", "twist")
 _MOST_FRAMES = 160
 # A robot without a field has slid if it went farther than this share of its length.
 _SLID = 0.25
+# Where the headings of an axis without ends begin, degrees, by either custom.
+_HALF_TURNS_DEG = (-90.0, 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +56,8 @@ class Observed:
         The same between those that are compared: longer where most are lost, or more than are compared.
     slid_m
         Way that the robot slid without a field, m; 0 where it held, or where there is a field.
+    heading_turn
+        After how much a heading comes back to itself, rad: 2π of an end of the body, π of an axis without ends.
     outcome
         What was noted beside or instead of the track.
     frames, lost
@@ -64,6 +72,7 @@ class Observed:
     frame_interval_s: float
     compared_interval_s: float
     slid_m: float
+    heading_turn: float
     outcome: Outcome | None
     frames: int
     lost: int
@@ -100,20 +109,31 @@ def observe(dataset: Dataset) -> tuple[Observed, ...]:
         What the lab measured.
     """
     length_m = float(np.ptp(np.concatenate(dataset.robot.body().outline)[:, 1]))
-    return tuple(_observed(dataset, trial, length_m) for trial in dataset.trials)
+    turn = _heading_turn(dataset)
+    return tuple(_observed(dataset, trial, length_m, turn) for trial in dataset.trials)
 
 
-def _observed(dataset: Dataset, trial: LabTrial, length_m: float) -> Observed:
+def _heading_turn(dataset: Dataset) -> float:
+    """Return after how much the headings of a dataset come back to themselves, rad."""
+    tracks = [trial.track for trial in dataset.trials if trial.track is not None]
+    headings = [track.channels["heading_deg"] for track in tracks if "heading_deg" in track.channels]
+    seen = np.concatenate([np.empty(0), *headings])
+    seen = seen[np.isfinite(seen)]
+    # Of an end that was seen on one side alone either is the same.
+    return pi if any(np.all((low <= seen) & (seen <= low + 180.0)) for low in _HALF_TURNS_DEG) else 2.0 * pi
+
+
+def _observed(dataset: Dataset, trial: LabTrial, length_m: float, turn: float) -> Observed:
     sensor, track = dataset.sensor, trial.track
     empty = np.empty(0)
     if track is None:
-        return Observed(trial.id, empty, {}, None, {}, 0.0, 0.0, 0.0, trial.outcome, 0, 0)
+        return Observed(trial.id, empty, {}, None, {}, 0.0, 0.0, 0.0, turn, trial.outcome, 0, 0)
     found = np.zeros(len(track.time_s), dtype=bool)
     for column in track.channels.values():
         found |= np.isfinite(column)
     kept = np.flatnonzero(found)
     if not len(kept):
-        return Observed(trial.id, empty, {}, None, {}, 0.0, 0.0, 0.0, trial.outcome, len(found), len(found))
+        return Observed(trial.id, empty, {}, None, {}, 0.0, 0.0, 0.0, turn, trial.outcome, len(found), len(found))
     stride = float(np.median(np.diff(kept))) if len(kept) > 1 else 1.0
     if len(kept) > _MOST_FRAMES:
         stride *= len(kept) / _MOST_FRAMES
@@ -147,6 +167,7 @@ def _observed(dataset: Dataset, trial: LabTrial, length_m: float) -> Observed:
         frame_interval_s=interval,
         compared_interval_s=stride * interval,
         slid_m=slid,
+        heading_turn=turn,
         outcome=trial.outcome,
         frames=len(track.time_s),
         lost=int(len(found) - found.sum()),

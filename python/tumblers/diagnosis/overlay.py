@@ -59,7 +59,7 @@ def overlays(fitter: Fitter, nominal: HeldOut, chosen: HeldOut, contender: Conte
             Overlay(
                 trial=seen.id,
                 time_s=seen.time_s,
-                measured={name: _shown(name, values) for name, values in measured.items()},
+                measured={name: _shown(name, values, seen.heading_turn) for name, values in measured.items()},
                 nominal={name: lines[0][name] for name in measured},
                 explained={name: lines[1][name] for name in measured},
                 outcomes={
@@ -72,8 +72,11 @@ def overlays(fitter: Fitter, nominal: HeldOut, chosen: HeldOut, contender: Conte
     return tuple(made)
 
 
-def _shown(name: str, values: Floats) -> Floats:
-    return np.degrees(values) if name in ("tilt", "heading") else values
+def _shown(name: str, values: Floats, heading_turn: float) -> Floats:
+    if name == "heading":
+        # Within half of what it comes back to itself after.
+        return np.degrees(values - heading_turn * np.rint(values / heading_turn))
+    return np.degrees(values) if name == "tilt" else values
 
 
 def _read(comparison: Comparison, trial: int, path: Path, held: HeldOut) -> dict[str, Floats]:
@@ -81,10 +84,6 @@ def _read(comparison: Comparison, trial: int, path: Path, held: HeldOut) -> dict
     time = comparison.readers[trial].observed.time_s
     position, orientation = seen_by(path, time, residual.local[trial], residual.camera)
     axis = body_axis(orientation)
-    return {
-        "x": position[:, 0],
-        "y": position[:, 1],
-        "z": position[:, 2],
-        "tilt": np.degrees(tilt_of(axis)),
-        "heading": np.degrees(heading_of(axis)),
-    }
+    read = dict(zip("xyz", position.T, strict=True)) | {"tilt": tilt_of(axis), "heading": heading_of(axis)}
+    turn = comparison.readers[trial].observed.heading_turn
+    return {name: _shown(name, values, turn) for name, values in read.items()}

@@ -105,7 +105,7 @@ class Reader:
             after |= {name: nearer[:, k] for k, name in enumerate(names)}
         elif "heading" in after:
             seen = seen_by(other, self.observed.time_s, *perfect)[1]
-            turn = 2.0 * np.pi * np.cos(tilt_of(body_axis(seen)))
+            turn = self.observed.heading_turn * np.cos(tilt_of(body_axis(seen)))
             # Of an axis that stands upright any heading counts for nothing.
             turns = np.rint((before["heading"] - after["heading"]) / np.maximum(turn, 1e-3))
             after["heading"] = after["heading"] + turn * turns
@@ -130,9 +130,9 @@ class Reader:
             if "tilt" in seen.values:
                 out["tilt"] = measured(seen.values["tilt"]) - tilt
             if "heading" in seen.values:
-                # The projection of an axis that stands upright points nowhere.
                 wrong = measured(seen.values["heading"]) - heading_of(axis)
-                out["heading"] = np.arctan2(np.sin(wrong), np.cos(wrong)) * np.cos(tilt)
+                # The projection of an axis that stands upright points nowhere.
+                out["heading"] = (wrong - seen.heading_turn * np.rint(wrong / seen.heading_turn)) * np.cos(tilt)
         return out
 
     @property

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -119,5 +120,7 @@ def _native(reader: Reader, floor: Floor, tracked: int) -> _core.Measured:
         if name not in observed.values:
             assert observed.orientation is not None
             kind, values = f"turn_{name}", observed.orientation
+        elif name == "heading" and observed.heading_turn < 2.0 * pi:
+            kind = "axis_heading"
         columns.append((kind, observed.time_s[kept], values[kept], floor.whiten[name]))
     return _core.Measured(columns, floor.tolerance, len(floor.outcome_scale), tracked)
