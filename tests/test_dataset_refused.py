@@ -51,6 +51,7 @@ REFUSED = [
     ("[sensor]", "[sensor]\nz_origin_tolerance_m = -1", "sensor.z_origin_tolerance_m", "at least 0"),
     ("[sensor]", "[sensor]\nheading_tolerance_deg = 181", "sensor.heading_tolerance_deg", "at most 180"),
     ("[sensor]", "[sensor]\nscale_tolerance = 1", "sensor.scale_tolerance", "less than 1"),
+    ("[sensor]", "[sensor]\nheading_of = 'nose'", "sensor.heading_of", "end or axis"),
     ("[sensor]", "[sensor]\ntracked_point = 'nose'", "sensor.tracked_point", "body_centre or centre_of_mass"),
     ('id = "f05"\n', "", "trial[0].id", "no such key"),
     ('id = "f05"', 'id = " "', "trial[0].id", "a name of printable characters"),

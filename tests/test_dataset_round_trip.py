@@ -99,6 +99,7 @@ SENSOR = st.builds(
     z_origin_tolerance_m=st.none() | LEAST,
     heading_tolerance_deg=LEAST,
     scale_tolerance=LEAST,
+    heading_of=st.sampled_from([None, "end", "axis"]),
     tracked_point=st.sampled_from([None, "body_centre", "centre_of_mass"]),
 )
 DATASET = st.builds(

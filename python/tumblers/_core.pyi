@@ -263,16 +263,16 @@ _Seen: TypeAlias = tuple[tuple[float, float, _Floats] | None, _Floats]
 class Measured:
     """One trial's measurements with their noise.
 
-    By channel its name, times (k,), numbers (k, 1) or unit quaternions (k, 4), and the inverse Cholesky factor of its
-    covariance (k, k); the whitened change with each nominal number (n, shared), how many outcomes there are, and how
-    many numbers the whole track has.
+    By channel its name (``axis_heading`` for a heading that comes back to itself after half a turn), times (k,),
+    numbers (k, 1) or unit quaternions (k, 4), and the inverse Cholesky factor of its covariance (k, k); the whitened
+    change with each nominal number (n, shared), how many outcomes there are, and how many numbers the whole track has.
     """
 
     def __new__(
         cls, columns: list[tuple[str, _Floats, _Floats, _Floats]], tolerance: _Floats, outcomes: int, whole: int
     ) -> Measured: ...
     def whitened(self, run: _Seen, local: list[float], shared: list[float]) -> _Floats:
-        """Return the whitened differences, shape (n,), for a clock (s) and origin (m), shape (3,), and what all share:
+        """Return the whitened differences, shape (n,), for a clock (s) and origin (m), shape (4,), and what all share:
         the camera's heading (rad) and scale, then how far the nominal numbers are off."""
 
 def compare(
@@ -287,10 +287,10 @@ def compare(
     fit: bool = True,
     threads: int = 0,
 ) -> list[tuple[_Floats, _Floats, list[_Floats | None]]]:
-    """Return for each run of all trials its clocks (s) and origins (m), shape (trials, 3), what all share, and by trial
+    """Return for each run of all trials its clocks (s) and origins (m), shape (trials, 4), what all share, and by trial
     the whitened differences.
 
-    Bounds and standard deviations of clock and origin are by trial, (trials, 3); of what all share, least, most and
+    Bounds and standard deviations of clock and origin are by trial, (trials, 4); of what all share, least, most and
     standard deviations. What all share is fitted from the trials of `train`, an outcome having the weight of
     `outcome_weight` numbers of a track.
     """

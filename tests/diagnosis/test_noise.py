@@ -137,6 +137,10 @@ def test_an_angle_that_is_half_a_turn_off_changes_by_as_little_as_any(quaternion
     straight = np.tile([1.0, 0.0, 0.0, 0.0], (frames, 1)) if quaternions else None
     values = {**reader.observed.values, "heading": np.zeros(frames)}
     reader = replace(reader, observed=replace(reader.observed, orientation=straight, values=values))
+    if not quaternions:
+        axis = replace(reader, observed=replace(reader.observed, heading_turn=np.pi))
+        change = axis.change(turned_in_the_plane(89.5), turned_in_the_plane(90.5))
+        assert_allclose(change["heading"], np.radians(1.0), rtol=1e-9)
     change = reader.change(turned_in_the_plane(179.5), turned_in_the_plane(180.5))
     assert_allclose(change["heading"], np.radians(1.0), rtol=1e-9)
 

@@ -113,14 +113,29 @@ def test_angles_count_where_every_quaternion_was_lost() -> None:
         ((-90.0, 3.0, 90.0), np.pi),
         ((0.0, 3.0, 180.0), np.pi),
         ((-1.0, 3.0, np.nan), np.pi),
+        ((-173.0, 3.0, -90.0), np.pi),
+        ((np.nan, np.nan, np.nan), 2.0 * np.pi),
         # An end that jumps by half a turn as the body tumbles.
-        ((3.0, -177.0, 3.0), 2.0 * np.pi),
-        ((3.0, 181.0, 3.0), 2.0 * np.pi),
+        ((3.0, -178.0, 1.0, -176.0), 2.0 * np.pi),
+        ((-1.0, 181.0, 3.0, 178.0), 2.0 * np.pi),
     ],
 )
 def test_headings_within_half_a_turn_are_of_an_axis(headings_deg: tuple[float, ...], turn: float) -> None:
-    (observed,) = observe(tracked(TIME_S[:3], {"heading_deg": np.array(headings_deg)}))
+    (observed,) = observe(tracked(TIME_S[: len(headings_deg)], {"heading_deg": np.array(headings_deg)}))
     assert observed.heading_turn == turn
+
+
+def test_a_sensor_that_says_what_headings_are_of_is_believed() -> None:
+    for headings, said, turn in ((-1.0, "end", 2.0 * np.pi), (-177.0, "axis", np.pi)):
+        dataset = tracked(TIME_S[:2], {"heading_deg": np.array([3.0, headings])})
+        (observed,) = observe(replace(dataset, sensor=replace(dataset.sensor, heading_of=said)))
+        assert observed.heading_turn == turn
+
+
+def test_what_a_quaternion_says_has_its_ends() -> None:
+    dataset = measure(plan(PLANS[:1], duration_s=0.3), quaternions=True)
+    (observed,) = observe(replace(dataset, sensor=replace(dataset.sensor, heading_of="axis")))
+    assert observed.heading_turn == 2.0 * np.pi
 
 
 def test_an_axis_is_told_by_the_headings_of_all_trials() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import hypot
-from typing import get_args
+from typing import Literal, get_args
 
 from ..camera import Camera, TrackedPoint
 from ..check import choice, number, pair
@@ -15,11 +15,13 @@ __all__ = [
     "MOST_PX",
     "TYPICAL_ANGLE_NOISE_DEG",
     "TYPICAL_POSITION_NOISE_M",
+    "HeadingOf",
     "Pixel",
     "Sensor",
 ]
 
 Pixel = tuple[float, float]
+HeadingOf = Literal["end", "axis"]
 
 # What stands in a dataset without tracks, for trials that are only proposed.
 TYPICAL_POSITION_NOISE_M = 5.0e-6
@@ -63,6 +65,9 @@ class Sensor:
         What the positions are of: ``body_centre``, the centre of the body's shape, or ``centre_of_mass``. If None, a
         diagnosis takes the shape's centre, unless by the other an offset of the mass alone explains all and is clearly
         likelier.
+    heading_of
+        What headings are of: the body's +y ``end``, or an ``axis`` of which nobody knows which end is which. If None,
+        headings that all lie within half a turn are of an axis.
 
     Raises
     ------
@@ -83,6 +88,7 @@ class Sensor:
     heading_tolerance_deg: float = 2.0
     scale_tolerance: float = 0.005
     tracked_point: TrackedPoint | None = None
+    heading_of: HeadingOf | None = None
 
     def __post_init__(self) -> None:
         def put(name: str, value: object) -> None:
@@ -108,6 +114,8 @@ class Sensor:
         put("y_axis_px", _direction("sensor.y_axis_px", self.y_axis_px))
         if self.tracked_point is not None:
             choice("sensor.tracked_point", self.tracked_point, get_args(TrackedPoint))
+        if self.heading_of is not None:
+            choice("sensor.heading_of", self.heading_of, get_args(HeadingOf))
 
     @property
     def camera(self) -> Camera:

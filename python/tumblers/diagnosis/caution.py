@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import isfinite
 
+from ..effects.parameter import Nuisance
 from .diagnosis import Diagnosis
 from .phrase import meaning_of, title_of
 from .plausible import neutral_values, plausible_ranges, turning_keys
@@ -18,6 +19,8 @@ _AT_END = 0.01
 _MANY_LOST = 0.5
 # What the tolerances leave open of an outcome, in its noise: beyond so much it hardly counts.
 _MUCH_OPEN = 5.0
+# What a lab calls a nuisance that is none of the origin in the picture.
+_SLIPS: dict[Nuisance, str] = {"clock": "clock", "origin z": "zero of z"}
 
 
 def cautions(diagnosis: Diagnosis) -> tuple[str, ...]:
@@ -85,11 +88,11 @@ def _of_trials(diagnosis: Diagnosis) -> list[str]:
     # Where all is followed to within noise, it does not matter which end noise took it to.
     off = [f.trial for f in diagnosis.floors if f.at_tolerance] if diagnosis.verdict != "no_gap" else []
     if off:
-        names = sorted({name.partition(" ")[0] for f in diagnosis.floors for name in f.at_tolerance})
+        names = sorted({_SLIPS.get(name, "origin") for f in diagnosis.floors for name in f.at_tolerance})
         said.append(
             f"the {' and the '.join(names)} of {', '.join(off)} had to be taken to the end of what [sensor] allows: is "
-            "time zero the field's start, and the origin the robot's start on the substrate, in each of them? A zero "
-            "that is off in one trial and not in another looks like physics."
+            "time zero the field's start, the origin the robot's start, and z zero on the substrate, in each of them? "
+            "A zero that is off in one trial and not in another looks like physics."
         )
     rough = [f.trial for f in diagnosis.floors if f.numerical_sigmas > 1.0]
     if rough:

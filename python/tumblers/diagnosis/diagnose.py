@@ -348,7 +348,8 @@ def _assumptions(dataset: Dataset, comparison: Comparison, attribution: Attribut
         "The robot starts at rest on the substrate, long axis along +y, when the field starts.",
         f"The sensor's nuisances are fitted in every hypothesis: clock within {clock}, origin within "
         f"{origin}, heading within {sensor.heading_tolerance_deg:g}°, scale within "
-        f"{100.0 * sensor.scale_tolerance:g} %. Larger ones are the effect camera_calibration, the same in all trials.",
+        f"{100.0 * sensor.scale_tolerance:g} %. Larger ones, but for z, are the effect camera_calibration, the same in "
+        "all trials.",
         "A substrate that is tilted, rough or sticky is so alike under every trial's start. A friction that drifts "
         f"does so anew, and alike, in every trial, which is expected in {100.0 * FORM_SHARE:g} % of the cases.",
         f"The nominal numbers may be off by these standard deviations: {nominal}.",
@@ -395,10 +396,9 @@ def _assumptions(dataset: Dataset, comparison: Comparison, attribution: Attribut
             "Of a robot that slides without a field, half of its way is compared, and that it slides as an outcome: "
             "where it catches again is up to the spot."
         )
-    if any("heading" in one.values and one.heading_turn < 2.0 * pi for one in observed):
-        said.append(
-            "Headings are taken to be of an axis of which nobody knows which end is which: all lie within half a turn."
-        )
+    if any(one.heading_turn < 2.0 * pi for one in observed):
+        why = "as the sensor says" if dataset.sensor.heading_of else "for all lie within half a turn"
+        said.append(f"Headings are taken to be of an axis of which nobody knows which end is which, {why}.")
     if any(np.isnan(column).any() for track in tracks for column in track.channels.values()):
         said.append(
             "Lost frames, and frames after the robot has left the view, are not compared: it is not at rest then."

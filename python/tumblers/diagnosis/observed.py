@@ -4,8 +4,8 @@ Of a robot that slides without a field, down a slope that should hold it, the fi
 which it gathers speed; that it slides counts as an outcome. Where it catches again is up to the spot.
 
 The heading of a body that tumbles end over end jumps by half a turn each time that it stands upright, if it is of an
-end. A fit of an ellipse does not know which end is which: its headings all lie within half a turn, -90° to 90° or 0° to
-180°, and are those of an axis, which comes back to itself after half a turn.
+end. A fit of an ellipse does not know which end is which: its headings all lie within half a turn, and are those of an
+axis, which comes back to itself after half a turn. Of an end that never jumps either is the same.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ CHANNELS = ("x", "y", "z", "tilt", "heading", "twist")
 _MOST_FRAMES = 160
 # A robot without a field has slid if it went farther than this share of its length.
 _SLID = 0.25
-# Where the headings of an axis without ends begin, degrees, by either custom.
-_HALF_TURNS_DEG = (-90.0, 0.0)
+# Both ends of half a turn may be there, as decimals have them, rad.
+_ROUNDING = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,31 +109,30 @@ def observe(dataset: Dataset) -> tuple[Observed, ...]:
         What the lab measured.
     """
     length_m = float(np.ptp(np.concatenate(dataset.robot.body().outline)[:, 1]))
-    turn = _heading_turn(dataset)
-    return tuple(_observed(dataset, trial, length_m, turn) for trial in dataset.trials)
+    trials = [_observed(dataset, trial, length_m) for trial in dataset.trials]
+    headings = [one.values["heading"] for one in trials if "heading" in one.values]
+    stated = dataset.sensor.heading_of
+    axis = stated == "axis" or (stated is None and _within_half_a_turn(np.concatenate([np.empty(0), *headings])))
+    return tuple(replace(one, heading_turn=pi) if axis and "heading" in one.values else one for one in trials)
 
 
-def _heading_turn(dataset: Dataset) -> float:
-    """Return after how much the headings of a dataset come back to themselves, rad."""
-    tracks = [trial.track for trial in dataset.trials if trial.track is not None]
-    headings = [track.channels["heading_deg"] for track in tracks if "heading_deg" in track.channels]
-    seen = np.concatenate([np.empty(0), *headings])
-    seen = seen[np.isfinite(seen)]
-    # Of an end that was seen on one side alone either is the same.
-    return pi if any(np.all((low <= seen) & (seen <= low + 180.0)) for low in _HALF_TURNS_DEG) else 2.0 * pi
+def _within_half_a_turn(headings: Floats) -> bool:
+    """Return whether there are headings, rad, and half of the circle or more without any."""
+    seen = np.sort(headings[np.isfinite(headings)] % (2.0 * pi))
+    return len(seen) > 0 and float(np.diff(seen, append=seen[0] + 2.0 * pi).max()) >= pi - _ROUNDING
 
 
-def _observed(dataset: Dataset, trial: LabTrial, length_m: float, turn: float) -> Observed:
+def _observed(dataset: Dataset, trial: LabTrial, length_m: float) -> Observed:
     sensor, track = dataset.sensor, trial.track
     empty = np.empty(0)
     if track is None:
-        return Observed(trial.id, empty, {}, None, {}, 0.0, 0.0, 0.0, turn, trial.outcome, 0, 0)
+        return Observed(trial.id, empty, {}, None, {}, 0.0, 0.0, 0.0, 2.0 * pi, trial.outcome, 0, 0)
     found = np.zeros(len(track.time_s), dtype=bool)
     for column in track.channels.values():
         found |= np.isfinite(column)
     kept = np.flatnonzero(found)
     if not len(kept):
-        return Observed(trial.id, empty, {}, None, {}, 0.0, 0.0, 0.0, turn, trial.outcome, len(found), len(found))
+        return Observed(trial.id, empty, {}, None, {}, 0.0, 0.0, 0.0, 2.0 * pi, trial.outcome, len(found), len(found))
     stride = float(np.median(np.diff(kept))) if len(kept) > 1 else 1.0
     if len(kept) > _MOST_FRAMES:
         stride *= len(kept) / _MOST_FRAMES
@@ -167,7 +166,7 @@ def _observed(dataset: Dataset, trial: LabTrial, length_m: float, turn: float) -
         frame_interval_s=interval,
         compared_interval_s=stride * interval,
         slid_m=slid,
-        heading_turn=turn,
+        heading_turn=2.0 * pi,
         outcome=trial.outcome,
         frames=len(track.time_s),
         lost=int(len(found) - found.sum()),

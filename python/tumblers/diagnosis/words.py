@@ -125,6 +125,8 @@ def headline(diagnosis: Diagnosis) -> str:
     floor = f"noise alone gives {_sigmas(gap.noise_floor)}"
     if diagnosis.verdict == "no_gap":
         left = _sigmas(gap.after_nuisance_only)
+        if gap.noise_floor == 0.0:
+            return f"No gap: the nominal model contradicts no outcome (near the border of one, if at all: {left})."
         return f"No gap: the nominal model explains the data to within noise ({left}, {floor})."
     phrases = [phrase_of(effect, diagnosis.dataset) for effect in diagnosis.effects]
     if diagnosis.verdict == "explained" and phrases:

@@ -42,7 +42,8 @@ def plot_gap(gap: Gap, ax: Axes | None = None) -> Axes:
         ax.scatter(
             column, rows, s=70 if thick else 26, color=colour, marker=marker, linewidth=thick, label=label, zorder=2
         )
-    ax.axvline(max(gap.noise_floor, _LEAST), color="0.3", linestyle=":", linewidth=1.0, label="noise alone")
+    if gap.noise_floor > 0.0:
+        ax.axvline(gap.noise_floor, color="0.3", linestyle=":", linewidth=1.0, label="noise alone")
     ax.set_xscale("log")
     finite = drawn[np.isfinite(drawn)]
     highest = float(finite.max(initial=gap.noise_floor if np.isfinite(gap.noise_floor) else 1.0))
