@@ -30,7 +30,7 @@ def test_what_two_cameras_saw_is_taken_back(first: Camera, second: Camera) -> No
     seen = second.seen_position(first.seen_position(WAY))
     behind = Guide(TIME, seen[:, 0], seen[:, 1]).behind((first, second))
     assert behind is not None
-    assert_allclose(behind[0], TIME + first.time_offset_s + second.time_offset_s)
+    assert_allclose(behind[0], TIME + (first.time_offset_s + second.time_offset_s), rtol=0.0, atol=1e-15)
     # Rounding of an origin a centimetre away, seen a hundred times smaller.
     assert_allclose(behind[1], WAY[:, 1], rtol=0.0, atol=1e-14)
 

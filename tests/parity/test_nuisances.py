@@ -35,6 +35,7 @@ NOT_RUN = 30.0
 def off() -> Dataset:
     """Return trials of a sensor that is off in every way, with lost frames and outcomes of every kind."""
     dataset = measure(plan(), seed=8, clock_frames=0.4, origin_m=3e-5, heading_deg=1.2, scale=1.003)
+    dataset = replace(dataset, sensor=replace(dataset.sensor, z_origin_tolerance_m=4e-5))
     dataset = without(dataset, "f05", slice(5, 9))
     way = Outcome(climbs=True, mean_speed_m_per_s=2e-3, sigma_m_per_s=1e-4)
     first, second, *others, still = dataset.trials
@@ -50,7 +51,13 @@ def turned() -> Dataset:
 def rigid() -> Dataset:
     """Return trials of a sensor that is stated to be perfect, one of them without any frame left."""
     dataset = without(off(), "f10", slice(None))
-    sure = {"time_offset_s": 0.0, "origin_tolerance_m": 0.0, "heading_tolerance_deg": 0.0, "scale_tolerance": 0.0}
+    sure = {
+        "time_offset_s": 0.0,
+        "origin_tolerance_m": 0.0,
+        "z_origin_tolerance_m": 0.0,
+        "heading_tolerance_deg": 0.0,
+        "scale_tolerance": 0.0,
+    }
     return replace(dataset, sensor=replace(dataset.sensor, **sure))
 
 

@@ -27,14 +27,14 @@ class Nuisances:
     heading_deg, scale
         Of the camera.
     origin_m
-        Where each trial's track begins, x, y and z, m.
+        Where each trial's track begins, x and y, m.
     clock_s
         By how much each trial's frames are late, s.
     """
 
     heading_deg: float
     scale: float
-    origin_m: tuple[tuple[float, float, float], ...]
+    origin_m: tuple[tuple[float, float], ...]
     clock_s: tuple[float, ...]
 
     @classmethod
@@ -48,12 +48,12 @@ class Nuisances:
         lab
             The lab.
         """
-        origins = np.clip(rng.normal(0.0, 15e-6, size=(len(lab.plans), 3)), -48e-6, 48e-6).tolist()
+        origins = np.clip(rng.normal(0.0, 15e-6, size=(len(lab.plans), 2)), -48e-6, 48e-6).tolist()
         late = 0.49 / lab.frames_per_second
         return cls(
             heading_deg=float(np.clip(rng.normal(0.0, 0.7), -1.9, 1.9)),
             scale=float(np.clip(rng.normal(1.0, 0.0015), 0.9952, 1.0048)),
-            origin_m=tuple((x, y, z) for x, y, z in origins),
+            origin_m=tuple((x, y) for x, y in origins),
             clock_s=tuple(rng.uniform(-late, late, size=len(lab.plans)).tolist()),
         )
 
@@ -92,10 +92,10 @@ def measure(lab: Lab, number: int, scene: Scene, nuisances: Nuisances, rng: np.r
     )
 
 
-def _track(lab: Lab, plan: Plan, poses: Poses, origin_m: tuple[float, float, float], rng: np.random.Generator) -> Track:
+def _track(lab: Lab, plan: Plan, poses: Poses, origin_m: tuple[float, float], rng: np.random.Generator) -> Track:
     sensor, count = lab.sensor, len(poses.position_m)
     noisy = Poses(
-        poses.position_m + np.array(origin_m) + sensor.position_noise_m * rng.normal(size=(count, 3)),
+        poses.position_m + np.array([*origin_m, 0.0]) + sensor.position_noise_m * rng.normal(size=(count, 3)),
         _shaken(poses.orientation, np.radians(sensor.angle_noise_deg) * rng.normal(size=(count, 3))),
     )
     true, channels = channels_of(poses), channels_of(noisy)

@@ -22,9 +22,7 @@ _SPEED_SHARE, _LEAST_SPEED = 0.01, 3e-5
 _CLIMB_SIGMA = 3.0
 # So many standard deviations of each nominal number are taken out: of ten at once, as many as they are off together.
 _MOST_OFF = 1.0
-# Columns: of a trial the origin in x, y and z and the clock, then the camera's.
-_CLOCK, _PER_TRIAL = 3, 4
-_HEADING, _SCALE = _PER_TRIAL, _PER_TRIAL + 1
+_ORIGIN, _CLOCK, _PER_TRIAL = 0, 2, 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +76,7 @@ def strength(
         sides.append(side)
     sensor = lab.sensor
     clock = 0.5 / lab.frames_per_second if sensor.time_offset_s is None else sensor.time_offset_s
-    per_trial = [*sensor.origin_tolerances_m, clock]
+    per_trial = [sensor.origin_tolerance_m, sensor.origin_tolerance_m, clock]
     camera = [sensor.heading_tolerance_deg, sensor.scale_tolerance]
     bound = np.array([*(per_trial * count), *camera, *([_MOST_OFF] * len(moved))])
     # In units of their bounds the columns are alike, and a square system of the same solution is quick to solve.
@@ -95,7 +93,7 @@ def strength(
 def _rows(
     lab: Lab, plan: Plan, scene: Scene, other: Scene, moved: Sequence[Scene]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the columns (x0, y0, z0, clock, heading, scale, numbers) and the difference, both over the noise."""
+    """Return the columns (x0, y0, clock, heading, scale, numbers) and the difference, both over the noise."""
     matrices: list[NDArray[np.float64]] = []
     sides: list[NDArray[np.float64]] = []
 
@@ -119,11 +117,11 @@ def _rows(
         x, y = nominal["x_m"], nominal["y_m"]
         per_degree = np.pi / 180.0
         nuisances: dict[str, dict[int, NDArray[np.float64] | float]] = {
-            "x_m": {0: 1.0, _HEADING: -y * per_degree, _SCALE: x},
-            "y_m": {1: 1.0, _HEADING: x * per_degree, _SCALE: y},
-            "z_m": {2: 1.0},
+            "x_m": {0: 1.0, 3: -y * per_degree, 4: x},
+            "y_m": {1: 1.0, 3: x * per_degree, 4: y},
+            "z_m": {},
             "tilt_deg": {},
-            "heading_deg": {_HEADING: 1.0},
+            "heading_deg": {3: 1.0},
         }
         for name, columns in nuisances.items():
             if name not in lab.channels:
@@ -137,7 +135,7 @@ def _rows(
             turns = [turn_between(other.poses.orientation, one.poses.orientation) for one in (scene, *moved)]
             rates = turn_between(other.before.orientation, other.after.orientation) / h
             for i in range(3):
-                columns = {_CLOCK: rates[:, i], _HEADING: 1.0 if i == 2 else 0.0}
+                columns = {_CLOCK: rates[:, i], 3: 1.0 if i == 2 else 0.0}
                 add([turn[:, i] for turn in turns], lab.sensor.angle_noise_deg, columns)
     inside = np.array([True])
 

@@ -341,8 +341,9 @@ def _assumptions(dataset: Dataset, comparison: Comparison, attribution: Attribut
     nominal = ", ".join(f"{name} {100.0 * share:g} %" for name, share in TOLERANCES.items())
     given = "magnetic_torque" in comparison.dataset.model_given
     stated = "as the dataset states" if given else "which the dataset leaves open"
-    along, _, upwards = (f"{1e6 * most:g} µm" for most in sensor.origin_tolerances_m)
-    origin = along if upwards == along else f"{along}, along z {upwards}"
+    origin = f"{1e6 * sensor.origin_tolerance_m:g} µm"
+    if sensor.z_origin_tolerance_m > 0.0:
+        origin += f", along z {1e6 * sensor.z_origin_tolerance_m:g} µm"
     said = [
         f"The magnetic torque is taken by the scheme '{simulator.model.magnetic_torque}', {stated}.",
         "The robot starts at rest on the substrate, long axis along +y, when the field starts.",
