@@ -40,7 +40,7 @@ from ..effects.size_error import SizeError
 from ..field import RotatingField, StaticField, TableField
 from ..scenario import Scenario
 from .pose import Path
-from .reading import YES_OR_NO, Reader
+from .reading import BORDERS, Reader
 from .simulator import SHORTEST_STEP_S, Edit, Job, Simulator
 
 __all__ = [
@@ -127,7 +127,7 @@ class Floor:
     @cached_property
     def noisy(self) -> int:
         """Number of numbers that noise moves: all but outcomes of yes or no."""
-        return self.size - len(YES_OR_NO & self.outcome_scale.keys())
+        return self.size - len(BORDERS.keys() & self.outcome_scale.keys())
 
     def counts(self, frames: int) -> NDArray[np.bool_]:
         """Return which of all numbers were measured in the first frames, shape (k,); outcomes are of the whole.

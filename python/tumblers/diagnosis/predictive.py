@@ -13,7 +13,7 @@ from scipy.stats import chi2
 
 from .comparison import Comparison, Residual
 from .loss import huber, robust_cost
-from .reading import SLID, reached
+from .reading import BORDERS, reached
 
 __all__ = ["contradicted", "is_right", "is_wanting", "mean_square", "mean_squares"]
 
@@ -28,7 +28,7 @@ _WANTING = 1.1
 _RARE = 1e-3
 # What a climb or a slide that was seen costs a model that stays where it is, within a fiftieth of the way: the smooth
 # likelihood is for models near the border. A climb that was not seen costs as much at 0.18 of the way.
-_HOLDS = {"climbs": reached(0.02, True) ** 2, "slides": reached(0.02, True, SLID) ** 2}
+_HOLDS = {name: reached(0.02, True, border) ** 2 for name, border in BORDERS.items()}
 
 
 def mean_squares(residual: Residual) -> NDArray[np.float64]:

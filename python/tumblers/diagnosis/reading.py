@@ -28,14 +28,14 @@ from ..scenario import Scenario
 from .observed import Observed
 from .pose import Path, body_axis, heading_of, nearer_turn, relative_turn, tilt_of
 
-__all__ = ["SLID", "YES_OR_NO", "Reader", "reached", "seen_by"]
+__all__ = ["BORDERS", "SLID", "Reader", "reached", "seen_by"]
 
 Floats = NDArray[np.float64]
 
-# Outcomes that are so or not, of which a right model leaves nothing.
-YES_OR_NO = frozenset({"climbs", "slides"})
 # Share of the way slid from which a model slides as well, and how blurred this border and that of climbing are.
 SLID, _BLUR = 0.3, 0.05
+# Outcomes of yes or no, of which a right model leaves nothing, and from which share on it is yes.
+BORDERS = {"climbs": CLIMBED, "slides": SLID}
 # A human who writes down the wrong outcome.
 _LAPSE = 0.01
 # Moments of a rest that are averaged.
