@@ -123,11 +123,6 @@ class Sensor:
         return Camera() if self.tracked_point is None else Camera(tracked_point=self.tracked_point)
 
     @property
-    def origin_tolerances_m(self) -> tuple[float, float, float]:
-        """How far the origin may be off along x, y and z, m."""
-        return self.origin_tolerance_m, self.origin_tolerance_m, self.z_origin_tolerance_m
-
-    @property
     def x_axis_px(self) -> Pixel:
         """Direction of the substrate's +x in the image: to the right of +y as seen from above, x = y × z."""
         right, down = self.y_axis_px

@@ -56,12 +56,12 @@ class Observed:
         The same between those that are compared: longer where most are lost, or more than are compared.
     slid_m
         Way that the robot slid without a field, m; 0 where it held, or where there is a field.
-    heading_turn
-        After how much a heading comes back to itself, rad: 2π of an end of the body, π of an axis without ends.
     outcome
         What was noted beside or instead of the track.
     frames, lost
         Number of frames in the file, and of those without any measurement.
+    heading_turn
+        After how much a heading comes back to itself, rad: 2π of an end of the body, π of an axis without ends.
     """
 
     id: str
@@ -72,10 +72,10 @@ class Observed:
     frame_interval_s: float
     compared_interval_s: float
     slid_m: float
-    heading_turn: float
     outcome: Outcome | None
     frames: int
     lost: int
+    heading_turn: float = 2.0 * pi
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -126,13 +126,13 @@ def _observed(dataset: Dataset, trial: LabTrial, length_m: float) -> Observed:
     sensor, track = dataset.sensor, trial.track
     empty = np.empty(0)
     if track is None:
-        return Observed(trial.id, empty, {}, None, {}, 0.0, 0.0, 0.0, 2.0 * pi, trial.outcome, 0, 0)
+        return Observed(trial.id, empty, {}, None, {}, 0.0, 0.0, 0.0, trial.outcome, 0, 0)
     found = np.zeros(len(track.time_s), dtype=bool)
     for column in track.channels.values():
         found |= np.isfinite(column)
     kept = np.flatnonzero(found)
     if not len(kept):
-        return Observed(trial.id, empty, {}, None, {}, 0.0, 0.0, 0.0, 2.0 * pi, trial.outcome, len(found), len(found))
+        return Observed(trial.id, empty, {}, None, {}, 0.0, 0.0, 0.0, trial.outcome, len(found), len(found))
     stride = float(np.median(np.diff(kept))) if len(kept) > 1 else 1.0
     if len(kept) > _MOST_FRAMES:
         stride *= len(kept) / _MOST_FRAMES
@@ -166,7 +166,6 @@ def _observed(dataset: Dataset, trial: LabTrial, length_m: float) -> Observed:
         frame_interval_s=interval,
         compared_interval_s=stride * interval,
         slid_m=slid,
-        heading_turn=2.0 * pi,
         outcome=trial.outcome,
         frames=len(track.time_s),
         lost=int(len(found) - found.sum()),

@@ -322,7 +322,8 @@ class Simulator:
         places = None if drawn is None or guide is None else guide.behind(drawn.cameras)
         if drawn is None or places is None:
             return trial
-        return trial.guided(*places, _tracked_m(run.scenario), drawn.rate_per_s)
+        tracked = run.scenario.camera.tracked_m(run.scenario.robot.center_of_mass_m)
+        return trial.guided(*places, tracked, drawn.rate_per_s)
 
     def _possible(self, job: Job) -> Scenario | None:
         with suppress(InputError):
@@ -350,10 +351,6 @@ class Simulator:
             orientation=orientation,
             contact_mode=rollout["contact_mode"][:rows],
         )
-
-
-def _tracked_m(scenario: Scenario) -> Floats:
-    return scenario.camera.tracked_m(scenario.robot.center_of_mass_m)
 
 
 def _unseen(scenario: Scenario) -> Scenario:
