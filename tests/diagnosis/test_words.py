@@ -50,6 +50,19 @@ def test_where_there_is_no_gap_what_is_left_is_told_and_what_is_likelier_all_the
     assert left.index("1.1") < left.index("4") < left.index("1.2")
 
 
+def test_where_outcomes_alone_leave_no_gap_nothing_is_said_of_noise() -> None:
+    gap = replace(no_gap().gap, noise_floor=0.0, after_nuisance_only=0.7)
+    said = headline(replace(no_gap(), gap=gap))
+    assert said == "No gap: the nominal model contradicts no outcome (near the border of one, if at all: 0.7 σ)."
+
+
+def test_the_zero_that_was_taken_to_its_end_is_named() -> None:
+    first, *others = made().floors
+    floors = (replace(first, at_tolerance=("origin x", "origin z")), *others)
+    cautions = " ".join(text for label, text in points(made(floors=floors)) if label == "caution")
+    assert f"the origin and the zero of z of {first.trial} had to be taken to the end" in cautions
+
+
 def test_two_effects_are_both_named() -> None:
     tilt = EffectEstimate(
         "substrate_tilt", 0.9, {"slope_x_deg": Interval(0, -1, 1), "slope_y_deg": Interval(-3, -3.5, -2.5)}, ()
