@@ -120,3 +120,31 @@ def test_what_a_guide_makes_of_a_run(rate_per_s: float, point_m: tuple[float, fl
     np.testing.assert_allclose(core["position_m"], positions, rtol=0.0, atol=POSE * trial.body.radius)
     (free,) = _core.rollouts([twin.core], [1])
     assert np.abs(core["position_m"] - free["position_m"]).max() > 1e-5
+
+
+def test_what_takes_over_from_a_trial_for_a_while() -> None:
+    """A step is the other trial's where it begins within an interlude, and so is the adhesion that it feels."""
+    base = preset_scenario("cuboid_on_paper", duration_s=0.1)
+    substrate = replace(base.substrate, adhesion_N_per_m2=20.0, electrostatic_force_N=1e-6)
+    one, other = Twin.of(base), Twin.of(replace(base, substrate=substrate, field=drive(0.006, 10.0)))
+    # Within a step, at its start, and to the end.
+    h = one.reference.step
+    edges = (20.4 * h, 75.0 * h, 140.0 * h)
+    (core,) = _core.rollouts([one.core.with_interlude(other.core, edges)], [1])
+
+    def at(step: int) -> reference.Trial:
+        within = 21 <= step < 75 or step >= 140
+        return (other if within else one).reference
+
+    state = one.reference.resting_state()
+    positions, quaternions = [state.position], [state.quaternion]
+    force, centroid = at(0).adhesion_at(state)
+    for i in range(round(one.reference.duration / h)):
+        state = reference.step(at(i), state, i * h, force, centroid).state
+        force, centroid = at(i + 1).adhesion_at(state)
+        positions.append(state.position)
+        quaternions.append(state.quaternion)
+    np.testing.assert_allclose(core["position_m"], positions, rtol=0.0, atol=POSE * one.reference.body.radius)
+    np.testing.assert_allclose(core["orientation"], quaternions, rtol=0.0, atol=POSE)
+    for alone in _core.rollouts([one.core, other.core], [1, 1]):
+        assert np.abs(core["position_m"] - alone["position_m"]).max() > 1e-5

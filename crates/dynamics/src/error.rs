@@ -30,6 +30,10 @@ pub enum Invalid {
     WrenchOrder { row: usize, found: f64, before: f64 },
     #[error("row {row} of the guide is at {found} s, expected a time after {before} s")]
     GuideOrder { row: usize, found: f64, before: f64 },
+    #[error("row {row} of edges_s is at {found} s, expected a time after {before} s")]
+    EdgeOrder { row: usize, found: f64, before: f64 },
+    #[error("the other trial has another {what}, expected the same")]
+    OtherTrial { what: &'static str },
     #[error("the guide has no row, expected at least 1")]
     NoGuide,
     #[error("{name} has {found} entries, expected {expected}")]

@@ -25,6 +25,11 @@ impl Robot {
         Ok(Self { body, mass, inertia, moment })
     }
 
+    /// The body, as robots share it.
+    pub fn shared_body(&self) -> &Arc<Body> {
+        &self.body
+    }
+
     /// The shape.
     pub fn body(&self) -> &Body {
         &self.body

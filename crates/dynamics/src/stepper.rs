@@ -120,7 +120,7 @@ impl<'a> Stepper<'a> {
 
     /// Solves the next step and advances the state by it.
     pub fn advance(&mut self) -> &StepSolution {
-        let step = Step::new(self.trial, &self.state, self.time(), &self.adhesion);
+        let step = Step::new(self.trial.at(self.time()), &self.state, self.time(), &self.adhesion);
         match self.kind {
             SolverKind::Reduced | SolverKind::Unverified => self.solve_reduced(&step),
             SolverKind::General => {
@@ -193,7 +193,9 @@ impl<'a> Stepper<'a> {
         self.solution.patch = body.patch(support, &down);
         self.adhesion = if touches {
             let centroid = self.state.position + rotation * self.solution.patch.centroid;
-            Adhesion::of_patch(self.trial.substrate(), &self.solution.patch, self.trial.step(), centroid)
+            // It is felt in the next step.
+            let trial = self.trial.at(self.time());
+            Adhesion::of_patch(trial.substrate(), &self.solution.patch, trial.step(), centroid)
         } else {
             Adhesion::none()
         };

@@ -3,9 +3,10 @@
 use crate::contact::downward;
 use crate::error::{Invalid, finite, not_negative, positive};
 use crate::rotation::matrix;
-use crate::{Field, Guide, MagneticTorque, Mat3, Model, Relief, Robot, State, Substrate, Surroundings, Vec3};
+use crate::{Field, Guide, Interlude, MagneticTorque, Mat3, Model, Relief, Robot, State, Substrate, Surroundings, Vec3};
 use geometry::Support;
 use nalgebra::Quaternion;
+use std::sync::Arc;
 
 /// Over `ℓ`: how close to the plane counts as touching at the start, and how deep as rounding.
 const AT_REST: f64 = 1e-9;
@@ -56,6 +57,7 @@ pub struct Trial {
     weight: Vec3,
     steps: u64,
     guide: Option<Guide>,
+    interlude: Option<Interlude>,
 }
 
 impl Trial {
@@ -117,7 +119,7 @@ impl Trial {
         let (side_sin, side_cos) = parts.side_incline.sin_cos();
         // 0 - 0 is +0, and so is the force along x on a substrate that does not lean.
         let weight = Vec3::new(0.0 - weight * side_sin, -weight * sin * side_cos, -weight * cos * side_cos);
-        Ok(Self { parts, initial, support, weight, steps: found as u64, guide: None })
+        Ok(Self { parts, initial, support, weight, steps: found as u64, guide: None, interlude: None })
     }
 
     /// The same trial, drawn to a guide.
@@ -129,6 +131,28 @@ impl Trial {
     #[inline]
     pub fn guide(&self) -> Option<&Guide> {
         self.guide.as_ref()
+    }
+
+    /// The same trial, from which another takes over at times; it has to be of the same body in the same step.
+    pub fn with_interlude(self, interlude: Interlude) -> Result<Self, Invalid> {
+        let other = interlude.other();
+        if !Arc::ptr_eq(self.robot().shared_body(), other.robot().shared_body()) {
+            return Err(Invalid::OtherTrial { what: "body" });
+        }
+        if other.step() != self.step() {
+            return Err(Invalid::OtherTrial { what: "step_s" });
+        }
+        other.field().covers(self.parts.duration)?;
+        Ok(Self { interlude: Some(interlude), ..self })
+    }
+
+    /// The trial that is at work in the step that begins at `time`.
+    #[inline]
+    pub fn at(&self, time: f64) -> &Trial {
+        match &self.interlude {
+            Some(interlude) if interlude.holds(time) => interlude.other(),
+            _ => self,
+        }
     }
 
     /// What moves.

@@ -4,7 +4,7 @@ use crate::body::PyBody;
 use crate::convert::{choose, quaternion, refused};
 use crate::field::PyField;
 use dynamics::{
-    AdhesionActsAt, AdhesionEnters, Guide, MagneticTorque, Model, Relief, Robot, Substrate, Surroundings, Trial, Vec3,
+    AdhesionActsAt, AdhesionEnters, Guide, Interlude, MagneticTorque, Model, Relief, Robot, Substrate, Surroundings, Trial, Vec3,
     trial::TrialParts,
 };
 use pyo3::prelude::*;
@@ -123,6 +123,12 @@ impl PyTrial {
     fn guided(&self, time_s: Vec<f64>, y_m: Vec<f64>, point_m: [f64; 3], rate_per_s: f64) -> PyResult<Self> {
         let guide = Guide::new(&time_s, &y_m, Vec3::from(point_m), rate_per_s).map_err(refused)?;
         Ok(Self(self.0.clone().guided(guide)))
+    }
+
+    #[pyo3(signature = (other, edges_s))]
+    fn with_interlude(&self, other: &Self, edges_s: Vec<f64>) -> PyResult<Self> {
+        let interlude = Interlude::new(other.0.clone(), &edges_s).map_err(refused)?;
+        self.0.clone().with_interlude(interlude).map(Self).map_err(refused)
     }
 
     #[getter]
