@@ -3,7 +3,9 @@
 use crate::contact::downward;
 use crate::error::{Invalid, finite, not_negative, positive};
 use crate::rotation::matrix;
-use crate::{Field, Guide, Interlude, MagneticTorque, Mat3, Model, Relief, Robot, State, Substrate, Surroundings, Vec3};
+use crate::{
+    Field, Guide, Interlude, MagneticTorque, Mat3, Model, Relief, Robot, State, Substrate, Surroundings, Vec3,
+};
 use geometry::Support;
 use nalgebra::Quaternion;
 use std::sync::Arc;

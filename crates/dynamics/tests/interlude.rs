@@ -70,8 +70,7 @@ fn each_step_is_of_the_trial_in_whose_time_it_begins() {
         let patch = &one.solution().patch;
         let centroid = state.position + UnitQuaternion::new_unchecked(state.orientation) * patch.centroid;
         let touches = one.solution().normal > 0.0;
-        adhesion =
-            if touches { Adhesion::of_patch(next.substrate(), patch, h, centroid) } else { Adhesion::none() };
+        adhesion = if touches { Adhesion::of_patch(next.substrate(), patch, h, centroid) } else { Adhesion::none() };
         let off = (found[step as usize].position - state.position).norm();
         assert!(off < 1e-12, "{step}: {off}");
     }

@@ -4,8 +4,8 @@ use crate::body::PyBody;
 use crate::convert::{choose, quaternion, refused};
 use crate::field::PyField;
 use dynamics::{
-    AdhesionActsAt, AdhesionEnters, Guide, Interlude, MagneticTorque, Model, Relief, Robot, Substrate, Surroundings, Trial, Vec3,
-    trial::TrialParts,
+    AdhesionActsAt, AdhesionEnters, Guide, Interlude, MagneticTorque, Model, Relief, Robot, Substrate, Surroundings,
+    Trial, Vec3, trial::TrialParts,
 };
 use pyo3::prelude::*;
 
