@@ -8,7 +8,8 @@ y ← y + (1 - e^(-γ (t_k - t_(k-1)))) (ŷ_k - y)      at each frame
 ```
 
 loses none where it is seen (Abarbanel and others 2009, SIAM J. Appl. Dyn. Syst. 8, 1341); as γ falls, the objective
-comes back to the one that is asked for. ŷ is what the sensor saw as it was fitted to the run on its own (`Guide`).
+comes back to the one that is asked for. ŷ is what the sensor saw as it was fitted to the run on its own (`Guide`). What
+leaves a gap even where its runs are drawn as fast as that is no relief, and is left.
 Motion that hops leaves the objective rough, so that least squares stop at every hop: it is searched by clouds of points
 whose covariance adapts (CMA-ES; Hansen and Ostermeier 2001, Evol. Comput. 9, 159), in the longer steps as long as runs
 are drawn.
@@ -29,6 +30,7 @@ from .fitter import Fitter
 from .guide import Nudge
 from .hypothesis import Hypothesis
 from .own_noise import by_itself, settled
+from .predictive import is_wanting
 
 __all__ = ["found_again"]
 
@@ -91,7 +93,11 @@ def found_again(
 
     for k in clouded:
         share(k)
-        keep(k, _by_clouds(fitter, made[k], rates, seed, on_cloud))
+        found = _by_clouds(fitter, made[k], rates, seed, on_cloud)
+        if found is None:
+            # The others have the same relief beside something else.
+            break
+        keep(k, found)
     for k in which:
         share(k)
     return made
@@ -114,8 +120,8 @@ def _by_clouds(
     rates: Sequence[tuple[float, int, float]],
     seed: int,
     on_cloud: Callable[[], None],
-) -> Contender:
-    """Return a contender where the clouds around it lead.
+) -> Contender | None:
+    """Return a contender where the clouds around it lead, None where its runs leave a gap even as they are drawn.
 
     It is against the noise around where the last cloud ended.
     """
@@ -129,6 +135,8 @@ def _by_clouds(
             for _ in range(clouds):
                 on_cloud()
                 cloud.move()
+            if cloud.is_wanting():
+                return None
         point = cloud.best
     return _fitted(fitter, contender, point)
 
@@ -185,6 +193,13 @@ class _Cloud:
         k = int(np.argmin(costs))
         if costs[k] < self._least:
             self.best, self._least = points[k], costs[k]
+
+    def is_wanting(self) -> bool:
+        """Whether even runs that are drawn to the tracks leave a gap at the best point."""
+        if self._nudges is None:
+            return False
+        (best,) = self._fitter.residuals(self._hypothesis, [self.best], nudges=self._nudges)
+        return is_wanting(self._fitter.comparison, best)
 
     def _costs(self, points: Sequence[Floats]) -> list[float]:
         found = self._fitter.residuals(self._hypothesis, points, nudges=self._nudges)
