@@ -15,9 +15,7 @@ from tumblers.diagnosis.localise import localise
 from tumblers.diagnosis.onset import _evidence, _shared, begins_at_phase, begins_at_place, begins_at_time
 from tumblers.diagnosis.result import Region
 from tumblers.diagnosis.simulator import Simulator
-from tumblers.diagnosis.wrench_place import _left_at_best, _parts, _while, lacks_at_place
 from tumblers.effects import get
-from tumblers.effects.base import Effect
 from tumblers.presets import drive
 
 from .lab import ANGLE_NOISE_DEG, FRAMES_PER_SECOND, POSITION_NOISE_M, measure, plan
@@ -105,102 +103,6 @@ def test_a_sticky_place_is_found_where_it_is_and_not_where_the_robot_came_late_f
     law = StickySpot(size=0.2, place_m=place)
     (found,) = where(filmed(LONGER, law, seed=2, frames_per_second=120.0), "position_y_m")
     assert shared(found, *place) > 0.5
-
-
-def _slow(*truth: Effect, law: Law | None = None) -> Comparison:
-    planned = plan([("f2", drive(0.010, 2.0), 0.0)], duration_s=0.9)
-    if law is not None:
-        return compared(filmed(planned, law, seed=2, frames_per_second=120.0))
-    return compared(measure(planned, truth, seed=3, clock_frames=0.3))
-
-
-def test_one_trial_tells_the_place_in_which_something_holds_the_robot() -> None:
-    place = 1.2e-3, 2.4e-3
-    comparison = _slow(law=StickySpot(size=0.3, place_m=place))
-    paths = comparison.nominal_paths
-    residual = comparison.residual(paths)
-    found = lacks_at_place(comparison, residual, paths, 0)
-    assert found is not None
-    assert shared(found, *place) > 0.6
-    assert found.share_of_gap > 0.4
-    # A trial is asked only where no effect explains the gap.
-    for unexplained in (False, True):
-        regions, _ = localise(comparison, residual, paths, unexplained)
-        told = [(r.low, r.high) for r in regions if r.axis == "position_y_m"]
-        assert ((found.low, found.high) in told) == unexplained
-
-
-@pytest.mark.parametrize(("effect", "vector"), [("viscous_drag", (0.03,)), ("magnetization_misalignment", (6.0, 20.0))])
-def test_one_trial_tells_no_place_of_what_acts_all_along(effect: str, vector: tuple[float, ...]) -> None:
-    comparison = _slow(get(effect).from_vector(vector))
-    residual = comparison.residual(comparison.nominal_paths)
-    assert np.mean(residual.trials[0] ** 2) > 4.0
-    assert lacks_at_place(comparison, residual, comparison.nominal_paths, 0) is None
-
-
-def test_one_trial_tells_no_place_of_what_sets_in_at_a_moment() -> None:
-    comparison = _slow(law=PhaseJump(size=0.2, time_s=0.35, forwards=-1.0))
-    residual = comparison.residual(comparison.nominal_paths)
-    assert np.mean(residual.trials[0] ** 2) > 4.0
-    assert lacks_at_place(comparison, residual, comparison.nominal_paths, 0) is None
-
-
-@pytest.mark.parametrize("forwards", [1.0, -1.0])
-def test_a_place_is_where_a_robot_neither_begins_nor_ends(forwards: float) -> None:
-    y = forwards * np.concatenate([np.linspace(0.0, 1.0, 30), np.linspace(1.0, 0.95, 5)])
-    inner, outer = _parts(y, 10)
-    for parts, either in ((inner, False), (outer, True)):
-        assert parts
-        assert all(bool(part.inside[0] or part.inside[-1]) == either for part in parts)
-    # All of its way, from where it began to anywhere, and from anywhere to where it ended.
-    assert len(outer) == 10 + 9
-    assert len(inner) == 55 - 19
-    near = 1e-9
-    assert all(part.inside.tolist() == ((y > part.low - near) & (y < part.high + near)).tolist() for part in inner)
-
-
-def test_a_wrench_acts_while_the_robot_is_inside_and_then_alone() -> None:
-    time, inside = 0.1 * np.arange(1, 8), np.array([0, 0, 1, 1, 0, 1, 0], dtype=bool)
-    pieces = _while(time, inside, 1.0)
-    assert pieces.edges == pytest.approx([0.0, 0.25, 0.45, 0.55, 0.65, 1.0])
-    assert pieces.window.tolist() == [0, 1, 0, 1, 0]
-    whole = _while(time, np.ones(7, dtype=bool), 1.0)
-    assert (whole.edges.tolist(), whole.window.tolist()) == ([0.0, 1.0], [0])
-
-
-class _Valleys:
-    """What is left is a narrow valley along the logarithm of the amount, of a place, a component and a direction."""
-
-    def __init__(self, valleys: dict[tuple[str, int, float], tuple[float, float]]) -> None:
-        self.valleys = valleys
-
-    def left(self, those: list[tuple[str, int, float]]) -> np.ndarray:
-        found = []
-        for part, component, amount in those:
-            least, at = self.valleys.get((part, component, np.sign(amount)), (np.inf, 1.0))
-            found.append(least + 1e4 * np.log(abs(amount) / at) ** 2)
-        return np.array(found)
-
-
-def test_each_part_of_the_way_has_the_amount_that_does_best_for_it_in_either_ones_component() -> None:
-    valleys = {("a", 2, -1.0): (100.0, 3.1), ("b", 2, -1.0): (10.0, 1.3), ("out", 2, -1.0): (50.0, 0.77)}
-    # Of the amounts that are tried first another component has the best for what is outside.
-    valleys |= {("out", 1, 1.0): (300.0, 0.5), ("a", 1, 1.0): (2000.0, 1.0)}
-    families = [(["a", "b", "never"], (1.0, 2.0, 4.0)), (["out"], (0.5, 1.0, 2.0)), ([], (1.0,))]
-    inner, outer, none = _left_at_best(_Valleys(valleys), families)  # type: ignore[arg-type]
-    assert inner == pytest.approx([100.0, 10.0, np.inf], abs=1.0)
-    assert outer == pytest.approx([50.0], abs=1.0)
-    assert none.shape == (0,)
-
-
-def test_a_trial_that_was_not_seen_along_y_tells_no_place() -> None:
-    comparison = _slow(get("viscous_drag").from_vector((0.03,)))
-    residual = comparison.residual(comparison.nominal_paths)
-    assert lacks_at_place(comparison, residual, [None], 0) is None
-    (reader,) = comparison.readers
-    values = {name: seen for name, seen in reader.observed.values.items() if name != "y"}
-    comparison.readers = (replace(reader, observed=replace(reader.observed, values=values)),)
-    assert lacks_at_place(comparison, residual, comparison.nominal_paths, 0) is None
 
 
 @pytest.mark.parametrize(("phase", "share"), [(0.3, 0.2), (0.15, 0.25)])

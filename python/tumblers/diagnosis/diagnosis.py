@@ -275,7 +275,8 @@ def _region(region: Region) -> dict[str, Any]:
         place |= {"low": region.low, "high": region.high}
     else:
         place["value"] = region.value
-    return place | {"share_of_gap": region.share_of_gap, "sigmas": region.sigmas}
+    what = {} if region.what is None else {"what": region.what}
+    return place | {"share_of_gap": region.share_of_gap, "sigmas": region.sigmas} | what
 
 
 def _plain(value: Any) -> Any:

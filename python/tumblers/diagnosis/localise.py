@@ -11,14 +11,15 @@ which is three standard errors of a sum of squares whose numbers are correlated 
 unless a trial does, and in a trial ν is 1, the floor's variance, which is more than the noise has.
 
 Of time, of place and of the cycle an interval holds most of what is affected. Where the gap sets in at a moment, in a
-place along y or in a part of the cycle that trials share (`onset`), the region is that instead; and where they share
-none of these, but one trial has most of the gap, the place in which a wrench is missing in that one (`wrench_place`).
+place along y or in a part of the cycle that trials share (`onset`), the region is that instead. Where nothing explains
+the gap, and it does not set in at a moment, it is that of the place or the part of the cycle in which an effect acts
+alone (`in_part`), if there is one: what is wrong from somewhere on shows where it began, and less where it ended.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,12 +27,12 @@ from numpy.typing import NDArray
 from ..progress import OnPhase
 from .cells import MODES, Cells
 from .comparison import Comparison, Residual
+from .in_part import acts_in_part
 from .observed import CHANNELS
 from .onset import begins_at_phase, begins_at_place, begins_at_time
 from .pose import Path
 from .predictive import contradicted
 from .result import HeatMap, Region
-from .wrench_place import lacks_at_place
 
 __all__ = ["localise"]
 
@@ -45,8 +46,6 @@ _TRIAL_EXCESS = 0.3
 # An interval holds this much of what stands out on its axis; a region with less of the whole gap is not worth telling.
 _MOST = 0.8
 _LEAST_SHARE = 0.1
-# A trial that has so much of the gap may say by itself where it comes from.
-_IN_ONE = 0.5
 # A region holds more of the gap than of the numbers by this factor.
 _CONCENTRATED = 1.25
 _BINS = 10
@@ -92,7 +91,7 @@ def localise(
     paths
         The nominal model's.
     unexplained
-        Whether no effect that acts all along explains the gap, so that one trial is asked for a place.
+        Whether no effect that acts all along explains the gap, so that one is looked for that acts in a part alone.
     on_phase
         Is told the phase, how much of it is done, and of how much.
 
@@ -109,12 +108,10 @@ def localise(
     if regions:
         found = [begins(comparison, residual, paths) for begins in (begins_at_time, begins_at_place, begins_at_phase)]
         begun = {region.axis: region for region in found if region is not None}
-        most = max(regions, key=lambda region: region.share_of_gap)
-        if unexplained and not begun and most.share_of_gap > _IN_ONE:
-            assert most.value is not None
-            place = lacks_at_place(comparison, residual, paths, ids.index(most.value), on_phase)
-            if place is not None:
-                begun[place.axis] = replace(place, share_of_gap=most.share_of_gap * place.share_of_gap)
+        if unexplained and "time_s" not in begun:
+            shares = [next((r.share_of_gap for r in regions if r.value == name), 0.0) for name in ids]
+            parts = acts_in_part(comparison, residual, paths, shares, on_phase)
+            begun = {part.axis: part for part in parts} or begun
         for axis in axes.values():
             regions += [begun[axis.name]] if axis.name in begun else _interval(cells, axis, total)
         regions += _values(cells, "contact_mode", cells.mode, MODES, total)

@@ -30,7 +30,10 @@ def where_part(diagnosis: Diagnosis) -> str:
     for region in diagnosis.where:
         axis, extent = region_words(region)
         above = sigmas(region.sigmas) if region.sigmas is not None else ""
-        rows.append([escape(axis), escape(extent), bar(region.share_of_gap, percent(region.share_of_gap)), above])
+        there = "" if region.what is None else f", as if with {region.what} there"
+        rows.append(
+            [escape(axis), escape(extent + there), bar(region.share_of_gap, percent(region.share_of_gap)), above]
+        )
     table = data_table(["axis", "region", "share of the gap", "sigmas"], rows, numbers=(3,))
     maps = []
     for heat_map in diagnosis.heat_maps:

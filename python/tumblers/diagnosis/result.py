@@ -140,6 +140,8 @@ class Region:
         For an axis of names.
     sigmas
         Root mean square difference there, over what noise would give.
+    what
+        What acts there and not elsewhere, where that is known.
     """
 
     axis: str
@@ -148,6 +150,7 @@ class Region:
     high: float | None = None
     value: str | None = None
     sigmas: float | None = None
+    what: str | None = None
 
 
 @dataclass(frozen=True, eq=False)

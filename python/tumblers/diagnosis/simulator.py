@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..camera import Camera
+from ..core_errors import core_error
 from ..dataset import Dataset
 from ..effects.base import Effect
 from ..errors import InputError, TumblersError
@@ -24,7 +25,7 @@ from ..scenario import Scenario
 from .guide import Guide, Nudge
 from .pose import Path
 
-__all__ = ["LONGEST_STEP_S", "SHORTEST_STEP_S", "Edit", "Job", "Simulator", "longest_step_s"]
+__all__ = ["LONGEST_STEP_S", "SHORTEST_STEP_S", "Edit", "Interlude", "Job", "Simulator", "longest_step_s"]
 
 # Rows of a path: no farther apart than this, and so many in a cycle of the field.
 _LONGEST_INTERVAL_S = 2e-3
@@ -46,6 +47,21 @@ Edit = Callable[[Scenario], Scenario]
 Floats = NDArray[np.float64]
 
 
+class Interlude(NamedTuple):
+    """Effects that are at work in parts of a run alone, beside those that are all along.
+
+    Attributes
+    ----------
+    effects
+        They leave the body as it is.
+    edges_s
+        They begin at the first, s, end at the second, begin again at the third, and so on; increasing.
+    """
+
+    effects: tuple[Effect, ...]
+    edges_s: tuple[float, ...]
+
+
 @dataclass(frozen=True, eq=False)
 class Job:
     """One trial to simulate.
@@ -65,6 +81,8 @@ class Job:
     nudge
         How the run is drawn along y to where the robot was seen. If None, or where the trial has no `Guide`, or its
         camera shows too little of y (`Guide.behind`), it is on its own.
+    interlude
+        What is at work in parts of the run alone.
     """
 
     trial: int
@@ -73,6 +91,7 @@ class Job:
     edit: Edit | None = None
     share: float = 1.0
     nudge: Nudge | None = None
+    interlude: Interlude | None = None
 
 
 class _Drawn(NamedTuple):
@@ -83,11 +102,19 @@ class _Drawn(NamedTuple):
     rate_per_s: float
 
 
+class _Other(NamedTuple):
+    """A scenario that takes over between some times, s."""
+
+    scenario: Scenario
+    edges_s: tuple[float, ...]
+
+
 class _Run(NamedTuple):
-    """What moves: a scenario under a perfect camera, on its own or drawn to a track."""
+    """What moves: a scenario under a perfect camera, on its own or drawn to a track, and what takes over from it."""
 
     scenario: Scenario
     drawn: _Drawn | None
+    other: _Other | None
 
 
 class Simulator:
@@ -187,7 +214,8 @@ class Simulator:
         InputError
             An effect that cannot be added to this trial.
         """
-        scenario = self.nominal(job.trial, job.divisor * self._finer(job.trial, job.effects))
+        beside = () if job.interlude is None else job.interlude.effects
+        scenario = self.nominal(job.trial, job.divisor * self._finer(job.trial, (*job.effects, *beside)))
         if job.edit is not None:
             scenario = job.edit(scenario)
         for effect in job.effects:
@@ -314,10 +342,20 @@ class Simulator:
         drawn = None
         if job.nudge is not None and self.guides[job.trial] is not None:
             drawn = _Drawn(job.trial, (scenario.camera, job.nudge.sensor), job.nudge.rate_per_s)
-        return _Run(_unseen(scenario), drawn)
+        other = None
+        if job.interlude is not None:
+            effects, edges = job.interlude
+            within = replace(job, effects=(*job.effects, *effects), interlude=None)
+            other = _Other(_unseen(self.scenario(within)), edges)
+        return _Run(_unseen(scenario), drawn, other)
 
     def _native(self, run: _Run) -> _core.Trial:
         trial, drawn = run.scenario.trial(), run.drawn
+        if run.other is not None:
+            try:
+                trial = trial.with_interlude(run.other.scenario.trial(), run.other.edges_s)
+            except ValueError as error:
+                raise core_error(error) from None
         guide = None if drawn is None else self.guides[drawn.trial]
         places = None if drawn is None or guide is None else guide.behind(drawn.cameras)
         if drawn is None or places is None:

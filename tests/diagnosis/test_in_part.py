@@ -1,0 +1,176 @@
+"""What acts in a part of the data alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import inf
+
+import numpy as np
+import pytest
+
+from tumblers.blind.law import Law
+from tumblers.blind.outside import AmplifierDropout, FadingMagnet, PhaseJump, StickySpot
+from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.in_part import _cycle, _Runs, _table, _way, acts_in_part
+from tumblers.diagnosis.localise import localise
+from tumblers.diagnosis.result import Region
+from tumblers.diagnosis.simulator import Interlude, Job
+from tumblers.effects import get
+from tumblers.effects.base import Effect
+from tumblers.effects.electrostatic_force import ElectrostaticForce
+from tumblers.presets import drive
+
+from .lab import measure, plan
+from .test_onset import compared, filmed, shared
+
+FILM = 120.0
+
+
+def slow(*truth: Effect, law: Law | None = None, duration_s: float = 0.9) -> Comparison:
+    planned = plan([("f2", drive(0.010, 2.0), 0.0)], duration_s=duration_s)
+    if law is not None:
+        return compared(filmed(planned, law, seed=2, frames_per_second=FILM))
+    return compared(measure(planned, truth, seed=3, clock_frames=0.3))
+
+
+def parts(comparison: Comparison) -> dict[str, Region]:
+    """Return the parts that are told, by their axes."""
+    paths = comparison.nominal_paths
+    residual = comparison.residual(paths)
+    # There is a gap.
+    assert np.mean(residual.over(range(len(paths))) ** 2) > 4.0
+    found = acts_in_part(comparison, residual, paths, [1.0 / len(paths)] * len(paths))
+    return {region.axis: region for region in found}
+
+
+def test_one_trial_tells_the_place_in_which_something_holds_the_robot() -> None:
+    place = 1.2e-3, 2.4e-3
+    comparison = slow(law=StickySpot(size=0.3, place_m=place))
+    found = parts(comparison)["position_y_m"]
+    assert shared(found, *place) > 0.6
+    assert found.share_of_gap > 0.4
+    assert found.what is not None
+    # It is looked for only where no effect that acts all along explains the gap.
+    paths = comparison.nominal_paths
+    for unexplained in (False, True):
+        regions, _ = localise(comparison, comparison.residual(paths), paths, unexplained)
+        told = [(r.low, r.high, r.what) for r in regions if r.axis == "position_y_m"]
+        assert ((found.low, found.high, found.what) in told) == unexplained
+
+
+def test_a_robot_that_is_never_seen_to_leave_a_place_tells_where_it_begins() -> None:
+    place = 1.2e-3, 2.7e-3
+    comparison = slow(law=StickySpot(size=1.0, place_m=place))
+    y = comparison.readers[0].observed.values["y"]
+    assert place[0] < np.nanmax(y) < place[1]
+    found = parts(comparison)["position_y_m"]
+    assert found.low == pytest.approx(place[0], abs=3e-4)
+    assert found.high is not None
+    assert found.high < place[1]
+
+
+@pytest.mark.parametrize(("phase", "share"), [(0.3, 0.2), (0.85, 0.25)])
+def test_a_field_that_falls_short_in_a_part_of_the_cycle_drives_the_robot_less_there(
+    phase: float, share: float
+) -> None:
+    planned = plan([(f"f{f:g}", drive(0.010, f), 0.0) for f in (2.0, 3.0, 5.0)], duration_s=0.8)
+    law = AmplifierDropout(size=0.8, phase=phase, share=share)
+    found = parts(compared(filmed(planned, law, seed=6, frames_per_second=FILM)))["cycle_phase_deg"]
+    assert found.low is not None
+    assert 0.0 <= found.low < 360.0
+    assert shared(found, 360.0 * phase, 360.0 * (phase + share)) > 0.7
+    assert found.what is not None
+    factor, _, words = found.what.partition(" ")
+    assert words == "times the magnetic torque"
+    assert float(factor) == pytest.approx(0.2, abs=0.15)
+
+
+def test_what_acts_all_along_acts_in_no_part() -> None:
+    assert not parts(slow(get("magnetization_misalignment").from_vector((6.0, 20.0))))
+
+
+@pytest.mark.parametrize("law", [PhaseJump(size=0.2, time_s=0.35, forwards=-1.0), FadingMagnet(size=1.0)])
+def test_what_sets_in_at_a_moment_or_fades_acts_in_no_place(law: Law) -> None:
+    assert "position_y_m" not in parts(slow(law=law))
+
+
+def test_what_is_left_before_all_trials_were_run_is_clear_of_the_best() -> None:
+    planned = plan([(f"f{f:g}", drive(0.010, f), 0.0) for f in (2.0, 3.0)], duration_s=0.6)
+    comparison = compared(filmed(planned, AmplifierDropout(size=0.8, phase=0.3, share=0.2), seed=6))
+    axis = _cycle(comparison, [0, 1])
+    assert axis is not None
+    tried = [one for ends in axis.families for one in _table(axis, ends)]
+    residual = comparison.residual(comparison.nominal_paths)
+    each, some = (_Runs(comparison, residual, axis, inf, lambda *_: None) for _ in range(2))
+    each.clear = inf
+    every, left = np.array(each.left(tried)), np.array(some.left(tried))
+    whole = left == every
+    assert 0 < np.count_nonzero(~whole) < len(tried)
+    assert left.min() == every.min()
+    # Of some of the trials.
+    assert np.all(left[~whole] < every[~whole])
+    assert np.all(left[~whole] > every.min() + some.clear)
+
+
+def test_a_region_of_the_cycle_is_within_the_same_phases_of_each_cycle() -> None:
+    comparison = slow(get("viscous_drag").from_vector((0.03,)))
+    axis = _cycle(comparison, [0])
+    assert axis is not None
+    # At 2 Hz; across the end of the cycle it begins before the run.
+    assert axis.edges(0, (90.0, 180.0)) == pytest.approx([0.125, 0.25, 0.625, 0.75])
+    assert axis.edges(0, (330.0, 420.0))[:4] == pytest.approx([-1.0 / 24.0, 1.0 / 12.0, 11.0 / 24.0, 7.0 / 12.0])
+    assert axis.edges(0, (-30.0, 60.0)) == pytest.approx(axis.edges(0, (330.0, 420.0)))
+    assert (axis.way((0.0, 90.0)), axis.way((0.0, 360.0))) == ("left", "none")
+
+
+def test_a_trial_is_in_a_place_while_it_was_seen_there() -> None:
+    comparison = slow(get("viscous_drag").from_vector((0.03,)))
+    residual = comparison.residual(comparison.nominal_paths)
+    (reader,) = comparison.readers
+    time, y = reader.observed.time_s, np.array(reader.observed.values["y"])
+    y[:] = residual.local[0, 2] + np.interp(time, [0.0, 0.4, 0.5, 0.9], [0.0, 2e-3, 1.5e-3, 3e-3])
+    comparison.readers = (replace(reader, observed=replace(reader.observed, values={"y": y})),)
+    axis = _way(comparison, residual, comparison.nominal_paths, [0])
+    assert axis is not None
+    frame = float(np.max(np.diff(time)))
+    # In, out again on the way on, back, and out.
+    edges = axis.edges(0, (1.6e-3, 1.9e-3))
+    assert edges == pytest.approx([0.32, 0.38, 0.42, 0.48, 0.527, 0.607], abs=frame)
+    assert axis.edges(0, (-1e-3, 1e-3)) == pytest.approx([0.0, 0.2], abs=frame)
+    assert axis.edges(0, (4e-3, 5e-3)) == ()
+    ways = [axis.way(ends) for ends in ((1.6e-3, 1.9e-3), (-1e-3, 1e-3), (2.5e-3, 4e-3), (4e-3, 5e-3))]
+    assert ways == ["left", "none", "kept", "none"]
+
+
+def test_a_trial_that_was_not_seen_along_y_tells_no_place() -> None:
+    comparison = slow(get("viscous_drag").from_vector((0.03,)))
+    residual = comparison.residual(comparison.nominal_paths)
+    assert _way(comparison, residual, [None], [0]) is None
+    assert acts_in_part(comparison, residual, [None], [1.0]) == ()
+    (reader,) = comparison.readers
+    values = {name: seen for name, seen in reader.observed.values.items() if name != "y"}
+    comparison.readers = (replace(reader, observed=replace(reader.observed, values=values)),)
+    assert _way(comparison, residual, comparison.nominal_paths, [0]) is None
+
+
+def test_an_interlude_of_a_job_is_at_work_between_its_edges_alone() -> None:
+    comparison = slow(get("viscous_drag").from_vector((0.03,)))
+    held = (ElectrostaticForce(added_force_N=4e-6),)
+    jobs = [
+        Job(0),
+        Job(0, held),
+        Job(0, interlude=Interlude(held, (0.2, 0.5))),
+        Job(0, interlude=Interlude(held, (0.0,))),
+    ]
+    alone, all_along, between, from_start = comparison.simulator.run(jobs)
+    assert alone is not None
+    assert all_along is not None
+    assert between is not None
+    assert from_start is not None
+    np.testing.assert_array_equal(from_start.position_m, all_along.position_m)
+    row = int(0.2 / alone.interval_s)
+    np.testing.assert_array_equal(between.position_m[: row + 1], alone.position_m[: row + 1])
+    assert np.abs(between.position_m - alone.position_m).max() > 1e-4
+    # Bodies that differ cannot take over.
+    other = Interlude((get("size_error").from_vector((1.03, 1.0)),), (0.2, 0.5))
+    assert comparison.simulator.run([Job(0, interlude=other)]) == [None]
