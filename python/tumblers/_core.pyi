@@ -218,7 +218,8 @@ class Trial:
     def with_interlude(self, other: Trial, edges_s: _Numbers) -> Trial:
         """Return the trial from which another takes over.
 
-        That is from the first of the increasing edges, s, to the second, from the third to the fourth, and so on.
+        That is from the first of the increasing edges, s, to the second, from the third to the fourth, and so on. The
+        other has the same body, relief and step, and neither a guide nor an interlude.
         """
     def guided(self, time_s: _Numbers, y_m: _Numbers, point_m: _Numbers, rate_per_s: float) -> Trial:
         """Return the trial drawn along y to the places `y_m`, m, where it was seen at `time_s`, s, at a rate, 1/s."""

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tumblers.diagnosis import guided
+from tumblers.diagnosis import guided, predictive
 from tumblers.diagnosis import search as searches
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.contender import Contender
@@ -71,6 +71,23 @@ def test_a_wavelength_that_is_off_by_a_tenth_is_found_by_runs_that_are_drawn_to_
     assert effect.wavelength_m == pytest.approx(TRUTH.wavelength_m, rel=0.003)
     # From where it was stuck to within a twentieth of the way.
     assert found.total < right.total + 0.05 * (stuck.total - right.total)
+
+
+def test_what_leaves_a_gap_even_where_it_is_drawn_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
+    fitter, hypothesis = lab()
+    off = replace(TRUTH, wavelength_m=1.1 * TRUTH.wavelength_m)
+    stuck = settled_at(fitter, hypothesis, point_of(off, hypothesis), evaluations=1)
+    told: list[int] = []
+    monkeypatch.setattr(guided, "_RATES", ((20.0, 1, 1.0), (5.0, 1, 0.6), (0.0, 1, 0.4)))
+    # Less than any gap, and more than every one.
+    for wanting, clouds in ((0.0, 1), (1e9, 3)):
+        monkeypatch.setattr(predictive, "_WANTING", wanting)
+        told.clear()
+        (found,) = found_again(
+            fitter, [stuck], [0], 0, lambda phase, done, _: told.extend([done] * ("clouds" in phase))
+        )
+        assert told == list(range(clouds))
+        assert (found is stuck) == (clouds == 1)
 
 
 def test_what_one_has_found_of_a_relief_is_right_for_another_too(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,7 +11,7 @@ import pytest
 from tumblers.blind.law import Law
 from tumblers.blind.outside import AmplifierDropout, FadingMagnet, PhaseJump, StickySpot
 from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.in_part import _cycle, _Runs, _table, _way, acts_in_part
+from tumblers.diagnosis.in_part import _along_y, _cycle, _Runs, _table, acts_in_part
 from tumblers.diagnosis.localise import localise
 from tumblers.diagnosis.result import Region
 from tumblers.diagnosis.simulator import Interlude, Job
@@ -69,10 +69,9 @@ def test_a_robot_that_is_never_seen_to_leave_a_place_tells_where_it_begins() -> 
     assert found.high < place[1]
 
 
-@pytest.mark.parametrize(("phase", "share"), [(0.3, 0.2), (0.85, 0.25)])
-def test_a_field_that_falls_short_in_a_part_of_the_cycle_drives_the_robot_less_there(
-    phase: float, share: float
-) -> None:
+def test_a_field_that_falls_short_in_a_part_of_the_cycle_drives_less_there() -> None:
+    # Across the cycle's end.
+    phase, share = 0.85, 0.25
     planned = plan([(f"f{f:g}", drive(0.010, f), 0.0) for f in (2.0, 3.0, 5.0)], duration_s=0.8)
     law = AmplifierDropout(size=0.8, phase=phase, share=share)
     found = parts(compared(filmed(planned, law, seed=6, frames_per_second=FILM)))["cycle_phase_deg"]
@@ -90,8 +89,8 @@ def test_what_acts_all_along_acts_in_no_part() -> None:
 
 
 @pytest.mark.parametrize("law", [PhaseJump(size=0.2, time_s=0.35, forwards=-1.0), FadingMagnet(size=1.0)])
-def test_what_sets_in_at_a_moment_or_fades_acts_in_no_place(law: Law) -> None:
-    assert "position_y_m" not in parts(slow(law=law))
+def test_what_sets_in_at_a_moment_or_fades_acts_in_no_part(law: Law) -> None:
+    assert not parts(slow(law=law))
 
 
 def test_what_is_left_before_all_trials_were_run_is_clear_of_the_best() -> None:
@@ -103,9 +102,11 @@ def test_what_is_left_before_all_trials_were_run_is_clear_of_the_best() -> None:
     residual = comparison.residual(comparison.nominal_paths)
     each, some = (_Runs(comparison, residual, axis, inf, lambda *_: None) for _ in range(2))
     each.clear = inf
-    every, left = np.array(each.left(tried)), np.array(some.left(tried))
+    every, left = np.array(each.cost(tried)), np.array(some.cost(tried))
     whole = left == every
     assert 0 < np.count_nonzero(~whole) < len(tried)
+    assert each.whole == set(tried)
+    assert some.whole == {one for one, all_run in zip(tried, whole, strict=True) if all_run}
     assert left.min() == every.min()
     # Of some of the trials.
     assert np.all(left[~whole] < every[~whole])
@@ -120,7 +121,7 @@ def test_a_region_of_the_cycle_is_within_the_same_phases_of_each_cycle() -> None
     assert axis.edges(0, (90.0, 180.0)) == pytest.approx([0.125, 0.25, 0.625, 0.75])
     assert axis.edges(0, (330.0, 420.0))[:4] == pytest.approx([-1.0 / 24.0, 1.0 / 12.0, 11.0 / 24.0, 7.0 / 12.0])
     assert axis.edges(0, (-30.0, 60.0)) == pytest.approx(axis.edges(0, (330.0, 420.0)))
-    assert (axis.way((0.0, 90.0)), axis.way((0.0, 360.0))) == ("left", "none")
+    assert (axis.passage((0.0, 90.0)), axis.passage((0.0, 360.0))) == ("through", "none")
 
 
 def test_a_trial_is_in_a_place_while_it_was_seen_there() -> None:
@@ -130,7 +131,7 @@ def test_a_trial_is_in_a_place_while_it_was_seen_there() -> None:
     time, y = reader.observed.time_s, np.array(reader.observed.values["y"])
     y[:] = residual.local[0, 2] + np.interp(time, [0.0, 0.4, 0.5, 0.9], [0.0, 2e-3, 1.5e-3, 3e-3])
     comparison.readers = (replace(reader, observed=replace(reader.observed, values={"y": y})),)
-    axis = _way(comparison, residual, comparison.nominal_paths, [0])
+    axis = _along_y(comparison, residual, comparison.nominal_paths, [0])
     assert axis is not None
     frame = float(np.max(np.diff(time)))
     # In, out again on the way on, back, and out.
@@ -138,19 +139,19 @@ def test_a_trial_is_in_a_place_while_it_was_seen_there() -> None:
     assert edges == pytest.approx([0.32, 0.38, 0.42, 0.48, 0.527, 0.607], abs=frame)
     assert axis.edges(0, (-1e-3, 1e-3)) == pytest.approx([0.0, 0.2], abs=frame)
     assert axis.edges(0, (4e-3, 5e-3)) == ()
-    ways = [axis.way(ends) for ends in ((1.6e-3, 1.9e-3), (-1e-3, 1e-3), (2.5e-3, 4e-3), (4e-3, 5e-3))]
-    assert ways == ["left", "none", "kept", "none"]
+    ways = [axis.passage(ends) for ends in ((1.6e-3, 1.9e-3), (-1e-3, 1e-3), (2.5e-3, 4e-3), (4e-3, 5e-3))]
+    assert ways == ["through", "none", "stays", "none"]
 
 
 def test_a_trial_that_was_not_seen_along_y_tells_no_place() -> None:
     comparison = slow(get("viscous_drag").from_vector((0.03,)))
     residual = comparison.residual(comparison.nominal_paths)
-    assert _way(comparison, residual, [None], [0]) is None
+    assert _along_y(comparison, residual, [None], [0]) is None
     assert acts_in_part(comparison, residual, [None], [1.0]) == ()
     (reader,) = comparison.readers
     values = {name: seen for name, seen in reader.observed.values.items() if name != "y"}
     comparison.readers = (replace(reader, observed=replace(reader.observed, values=values)),)
-    assert _way(comparison, residual, comparison.nominal_paths, [0]) is None
+    assert _along_y(comparison, residual, comparison.nominal_paths, [0]) is None
 
 
 def test_an_interlude_of_a_job_is_at_work_between_its_edges_alone() -> None:
@@ -171,6 +172,9 @@ def test_an_interlude_of_a_job_is_at_work_between_its_edges_alone() -> None:
     row = int(0.2 / alone.interval_s)
     np.testing.assert_array_equal(between.position_m[: row + 1], alone.position_m[: row + 1])
     assert np.abs(between.position_m - alone.position_m).max() > 1e-4
+    # What is refused is not run, and the others are.
+    refused = Interlude((get("friction_coefficient").from_vector((1e9, 0.0)),), (0.1,))
+    assert comparison.simulator.run([Job(0), Job(0, interlude=refused)])[0] is not None
     # Bodies that differ cannot take over.
     other = Interlude((get("size_error").from_vector((1.03, 1.0)),), (0.2, 0.5))
     assert comparison.simulator.run([Job(0, interlude=other)]) == [None]

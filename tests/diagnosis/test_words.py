@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -13,6 +14,7 @@ import pytest
 from tumblers.diagnosis.condition import condition_of_table
 from tumblers.diagnosis.phrase import phrase_of, title_of
 from tumblers.diagnosis.quantity import percent, rounded, with_interval
+from tumblers.diagnosis.report_where import where_part
 from tumblers.diagnosis.result import EffectEstimate, Interval, RankedHypothesis, Region
 from tumblers.diagnosis.words import NO_TRIAL, headline, points, summary
 from tumblers.effects.catalogue import CATALOGUE
@@ -254,6 +256,26 @@ def test_shares_do_not_claim_certainty() -> None:
 def test_a_gap_in_most_trials_is_counted_rather_than_listed() -> None:
     regions = tuple(Region("trial", 0.9 / (i + 2), value=f"f{f:02.0f}", sigmas=9.0) for i, f in enumerate(FREQUENCIES))
     assert dict(points(made(where=regions)))["where"] == "7 of 9 trials are off, f01 holds most (45 %)."
+
+
+def test_what_may_act_in_a_part_alone_is_said_as_a_supposition() -> None:
+    cycle = Region("cycle_phase_deg", 0.48, low=308.0, high=401.0, what="0.12 times the magnetic torque")
+    place = Region("position_y_m", 0.41, low=8e-4, high=1.6e-3, what="240 nN more attraction")
+    trial = Region("trial", 0.9, value="f15")
+    one, both = (dict(points(made(where=where)))["where"] for where in ((trial, cycle), (trial, cycle, place)))
+    one_with = (
+        "With 0.12 times the magnetic torque at phase of the cycle 308 to 401° alone, 48 % of the gap would be gone"
+    )
+    or_with = (
+        "or about as well, with 240 nN more attraction at place y 0.80 to 1.60 mm alone, 41 % of the gap would be gone"
+    )
+    assert one.endswith(f". {one_with}.")
+    assert both.endswith(f". {one_with}; {or_with}.")
+    assert "would be gone" not in dict(points(made(where=(trial,))))["where"]
+    entries = json.loads(made(where=(trial, cycle)).to_json())["where"]
+    assert [entry.get("what") for entry in entries] == [None, cycle.what]
+    assert cycle.what is not None
+    assert cycle.what in where_part(made(where=(trial, cycle)))
 
 
 def test_of_what_refitting_the_camera_closes_no_effect_takes_the_credit() -> None:

@@ -1,7 +1,8 @@
 //! Interludes: times in which another trial takes over from the one that runs.
 //!
-//! A cause may act in a part of a run alone: in a place, or in a part of the field's cycle. Within an interlude a step has the
-//! field, the substrate and the surroundings of the other trial; the body and its state go on as they are.
+//! A cause may act in a part of a run alone: in a place, or in a part of the field's cycle. Within an interlude a step is one of
+//! the other trial, with its field, substrate, surroundings, slope, mass and moment; the body's shape, the relief and the state
+//! go on as they are.
 
 use crate::Trial;
 use crate::error::{Invalid, finite};

@@ -15,7 +15,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// A height map along `y`; without amplitudes it is flat.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Relief {
     wave_number: f64,
     /// `c_k`, `s_k`, m.

@@ -135,7 +135,8 @@ impl Trial {
         self.guide.as_ref()
     }
 
-    /// The same trial, from which another takes over at times; it has to be of the same body in the same step.
+    /// The same trial, from which another takes over at times: one of the same body on the same relief in the same step, that
+    /// is on its own.
     pub fn with_interlude(self, interlude: Interlude) -> Result<Self, Invalid> {
         let other = interlude.other();
         if !Arc::ptr_eq(self.robot().shared_body(), other.robot().shared_body()) {
@@ -143,6 +144,13 @@ impl Trial {
         }
         if other.step() != self.step() {
             return Err(Invalid::OtherTrial { what: "step_s" });
+        }
+        // The state on a relief is in the frame of its tangent plane.
+        if other.relief() != self.relief() {
+            return Err(Invalid::OtherTrial { what: "relief" });
+        }
+        if other.interlude.is_some() || other.guide.is_some() {
+            return Err(Invalid::OtherTrial { what: "interlude or guide" });
         }
         other.field().covers(self.parts.duration)?;
         Ok(Self { interlude: Some(interlude), ..self })

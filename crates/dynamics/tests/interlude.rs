@@ -5,7 +5,7 @@ mod common;
 use common::*;
 use nalgebra::UnitQuaternion;
 use tumblers_dynamics::trial::TrialParts;
-use tumblers_dynamics::{Adhesion, Interlude, Invalid, Robot, SolverKind, State, Stepper, Substrate, Trial};
+use tumblers_dynamics::{Adhesion, Interlude, Invalid, Relief, Robot, SolverKind, State, Stepper, Substrate, Trial};
 
 /// Positions and orientations after every step.
 fn states(trial: &Trial) -> Vec<State> {
@@ -47,6 +47,17 @@ fn without_an_edge_nothing_takes_over_and_from_an_edge_at_the_start_all_is_the_o
     assert_eq!(states(&with(parts, other, &[0.0]).unwrap()), alone[1]);
 }
 
+/// The moment is one of what another trial brings along.
+#[test]
+fn a_weaker_moment_takes_over_too() {
+    let (parts, _) = both();
+    let robot = Robot::new(parts.robot.shared_body().clone(), parts.robot.mass(), 0.2 * parts.robot.moment()).unwrap();
+    let weaker = TrialParts { robot, ..parts.clone() };
+    let alone = states(&Trial::new(weaker.clone()).unwrap());
+    assert_ne!(states(&Trial::new(parts.clone()).unwrap()), alone);
+    assert_eq!(states(&with(parts, weaker, &[0.0]).unwrap()), alone);
+}
+
 /// Steps of either trial, one stepper after another, as a walk makes them.
 #[test]
 fn each_step_is_of_the_trial_in_whose_time_it_begins() {
@@ -84,6 +95,12 @@ fn an_interlude_that_cannot_be_is_refused() {
     assert!(matches!(refused(other.clone(), &[f64::NAN]), Invalid::NotFinite { name: "edges_s", .. }));
     let slower = TrialParts { step: 0.5 * other.step, ..other.clone() };
     assert_eq!(refused(slower, &[0.1]), Invalid::OtherTrial { what: "step_s" });
+    let relief = Relief::new(2e-3, &[1e-6], &[0.0]).unwrap();
+    let rough = TrialParts { relief, ..other.clone() };
+    assert_eq!(refused(rough, &[0.1]), Invalid::OtherTrial { what: "relief" });
+    let nested = with(other.clone(), other.clone(), &[0.0]).unwrap();
+    let twice = Trial::new(parts.clone()).unwrap().with_interlude(Interlude::new(nested, &[0.0]).unwrap());
+    assert_eq!(twice.unwrap_err(), Invalid::OtherTrial { what: "interlude or guide" });
     let robot = Robot::new(std::sync::Arc::new(spiked(0.0)), other.robot.mass(), *other.robot.moment()).unwrap();
     assert_eq!(refused(TrialParts { robot, ..other }, &[0.1]), Invalid::OtherTrial { what: "body" });
 }

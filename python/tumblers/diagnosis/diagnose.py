@@ -230,7 +230,8 @@ class _Conclusion:
         tolerance = comparison.residual(paths).tolerance
         comparison.take_noise_of((), shares=shares)
         bare = comparison.residual(comparison.nominal_paths, tolerance=tolerance)
-        return localise(comparison, bare, comparison.nominal_paths, verdict == "unexplained", self.tell)
+        unexplained = verdict == "unexplained"
+        return localise(comparison, bare, comparison.nominal_paths, unexplained, chosen.effects, self.tell)
 
     def _estimates(self, chosen: Contender, tied: dict[str, tuple[str, ...]]) -> tuple[EffectEstimate, ...]:
         found = intervals(self.fitter, self.attribution, chosen)

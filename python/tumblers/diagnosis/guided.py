@@ -30,7 +30,7 @@ from .fitter import Fitter
 from .guide import Nudge
 from .hypothesis import Hypothesis
 from .own_noise import by_itself, settled
-from .predictive import is_wanting
+from .predictive import leaves_a_gap
 
 __all__ = ["found_again"]
 
@@ -94,10 +94,8 @@ def found_again(
     for k in clouded:
         share(k)
         found = _by_clouds(fitter, made[k], rates, seed, on_cloud)
-        if found is None:
-            # The others have the same relief beside something else.
-            break
-        keep(k, found)
+        if found is not None:
+            keep(k, found)
     for k in which:
         share(k)
     return made
@@ -135,7 +133,7 @@ def _by_clouds(
             for _ in range(clouds):
                 on_cloud()
                 cloud.move()
-            if cloud.is_wanting():
+            if rate == rates[0][0] and cloud.is_wanting():
                 return None
         point = cloud.best
     return _fitted(fitter, contender, point)
@@ -195,11 +193,14 @@ class _Cloud:
             self.best, self._least = points[k], costs[k]
 
     def is_wanting(self) -> bool:
-        """Whether even runs that are drawn to the tracks leave a gap at the best point."""
+        """Whether even runs that are drawn to the tracks leave a gap in them at the best point."""
         if self._nudges is None:
             return False
         (best,) = self._fitter.residuals(self._hypothesis, [self.best], nudges=self._nudges)
-        return is_wanting(self._fitter.comparison, best)
+        comparison = self._fitter.comparison
+        drawn = [i for i, guide in enumerate(comparison.simulator.guides) if guide is not None]
+        tracks = [best.trials[i][: comparison.floors[i].tracked] for i in drawn]
+        return leaves_a_gap(np.concatenate(tracks))
 
     def _costs(self, points: Sequence[Floats]) -> list[float]:
         found = self._fitter.residuals(self._hypothesis, points, nudges=self._nudges)

@@ -4,23 +4,24 @@ What no effect explains that acts all along may be what one does that acts in a 
 of trial t (`left_by`), the part is told where
 
 ```text
-min C(u 1_S)  <  min(C(0), min C(u 1_R)) - 2 a (4.5 + ln N),      C = Σ_t C_t,      min C(u 1_S) < s C(0)
+min C(u 1_S)  <  min(C(0), min C(u 1_R)) - 2ac (4.5 + ln N),      C = Σ_t C_t,      min C(u 1_S) < s C(0)
 ```
 
-R all of the data, or a place in which the robot was when its track begins, and S any other; a is how many neighbouring
-numbers count as one and N how many S, R and strengths u are tried at most. That is, what sets in somewhere is three
-standard deviations clear of what is there from the start. What a robot does not leave before its track ends may as well
-have set in at a moment: there s is less, and that the field drives it by less from then on is one of R too.
+R all of the data, a place in which the robot was when its track begins, or the time from a moment on, and S any other;
+what was found to act all along is one of them too. a is how many neighbouring numbers count as one, N how many S, each
+with how many kinds of effects, are tried first, and c the least C over the numbers of the trials where that is more
+than one. That is, what sets in somewhere is three standard deviations clear of what is there all along. A robot that
+does not leave a place before its track ends, or that may not, may as well have met something at a moment: there s is
+less.
 
 A trial is in a place while the robot was seen there, not while the model is: a model that is right is there then. The
-ends are the means over all S that were tried, each with the u that does best for it, of weights e^(-C/2ac), with c the
-least C over the numbers of the trials where that is more than one: a robot that jumps over a place does not say whether
-it belongs to S.
+ends are the means over all S that were tried, each with the u that does best for it, of weights e^(-C/2ac): a robot
+that jumps over a place does not say whether it belongs to S.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, product
 from math import inf, log
@@ -38,12 +39,12 @@ from ..field import RotatingField
 from ..progress import OnPhase
 from ..scenario import Scenario
 from .comparison import Comparison, Residual
-from .loss import robust_cost
 from .onset import CLEAR_LN
 from .pose import Path
+from .quantity import plain
 from .result import Region
 from .simulator import Interlude, Job
-from .wrench_trial import end_s, left_by
+from .wrench_trial import left_by
 
 __all__ = ["acts_in_part"]
 
@@ -52,19 +53,24 @@ Ends = tuple[float, float]
 
 # Trials that are looked at, the most of the gap first: with this share of it at least, so many at most.
 _LEAST_SHARE, _MOST_TRIALS = 0.03, 4
-# Parts of a cycle, of which a region has half at most; of a way so many at most, or this share of the body's length.
+# Parts of a cycle, of which a region has half at first; of a way so many at most, or this share of the body's length.
 _PARTS_OF_CYCLE, _MOST_PARTS, _PART_OF_BODY = 12, 10, 0.25
 # How many regions are followed to where less is left, by half of the first steps, a quarter and so on, so many moves
 # each: a little more may stop a robot altogether, and what is right by a little is found beside what is wrong.
 _FOLLOWED, _MOVES = (36, 24, 12, 8, 4), 2
-# s, of what the robot leaves again and of what it does not. A choice, made with the answers of 40 datasets known, in
+# s, of what the robot leaves again and of what it may not. A choice, made with the answers of 40 datasets known, in
 # which it is 0.55 at most where the region was right.
-_LEFT_AGAIN, _NEVER_LEFT = 0.6, 0.2
+_THROUGH, _STAYS = 0.6, 0.2
 # Of a part of the cycle and one of the way the one that leaves more than so many times what the other leaves is not
 # told: slow trials, which come to each once, hardly part them. A choice.
-_ALIKE = 2.0
-# Runs of one batch; and N.
-_AT_ONCE, _MOST_RUNS = 256, 5000
+_HARDLY_MORE = 2.0
+# Runs of one batch at most, and rows of their paths; and steps of one run of all trials, so that all runs of an axis,
+# some two thousand, take some two minutes on a core.
+_AT_ONCE, _MOST_ROWS, _MOST_STEPS = 256, 1_000_000, 40_000
+# A path has a row at least each so many seconds.
+_ROW_S = 2e-3
+# Moments from which on the field may drive a robot by less.
+_MOMENTS = 10
 
 
 class _Kind(NamedTuple):
@@ -102,12 +108,13 @@ _OF_PLACE = (
     _Kind(_both, (-2.0, -0.5, 1.0, 2.5, 4.0)),
     _Kind(_friction, (-1.0, 1.0, 2.0)),
 )
+_OF_BARE_PLACE = (_OF_PLACE[1], _OF_PLACE[3])
 # What a part of the cycle may do: drive the robot by less, or by more.
 _OF_CYCLE = _Kind(_drive, (-0.25, 0.25, 0.5, 0.75, 1.0))
 
 
-# Whether a trial was not in a region at first and left it again, or did not; what it was in at first is no region.
-Way = Literal["left", "kept", "none"]
+# Whether a trial that was not in a region at first leaves it again or stays; what it was in at first is no region.
+Passage = Literal["through", "stays", "none"]
 
 
 class _Tried(NamedTuple):
@@ -138,7 +145,7 @@ class _Axis:
         After which it comes again, 0 if never.
     edges
         Between which times, s, a trial is within a region.
-    way
+    passage
         How the trial that has most of the gap comes through a region.
     """
 
@@ -149,7 +156,7 @@ class _Axis:
     width: float
     turn: float
     edges: Callable[[int, Ends], tuple[float, ...]]
-    way: Callable[[Ends], Way]
+    passage: Callable[[Ends], Passage]
 
 
 def acts_in_part(
@@ -157,6 +164,7 @@ def acts_in_part(
     residual: Residual,
     paths: Sequence[Path | None],
     shares: Sequence[float],
+    effects: tuple[Effect, ...] = (),
     on_phase: OnPhase | None = None,
 ) -> tuple[Region, ...]:
     """Return the part of the cycle, or of the way along y, in which an effect acts; none if nobody can say.
@@ -174,6 +182,8 @@ def acts_in_part(
         The nominal model's.
     shares
         Of the gap, by trial.
+    effects
+        What was found to act all along.
     on_phase
         Is told the phase, how much of it is done, and of how much.
 
@@ -185,52 +195,74 @@ def acts_in_part(
     order = sorted(range(len(shares)), key=lambda i: -shares[i])
     tracked = [i for i in order if paths[i] is not None and comparison.floors[i].tracked]
     trials = [i for i in tracked if shares[i] >= _LEAST_SHARE][:_MOST_TRIALS]
+    steps = [comparison.simulator.nominal(i).run.steps for i in trials]
+    while trials and sum(steps[: len(trials)]) > _MOST_STEPS:
+        trials.pop()
+    if not trials:
+        return ()
     tell = on_phase or (lambda _phase, _done, _total: None)
-    found: list[tuple[float, Region]] = []
-    for axis in (_cycle(comparison, trials), _way(comparison, residual, paths, trials)):
+    nothing, chosen = _left(comparison, residual, trials, paths), inf
+    if effects:
+        found = comparison.simulator.run([Job(trial, effects) for trial in trials])
+        chosen = _left(comparison, residual, trials, dict(zip(trials, found, strict=True)))
+    told: list[tuple[float, Region]] = []
+    for axis in (_cycle(comparison, trials), _along_y(comparison, residual, paths, trials)):
         if axis is None:
             continue
-        nothing = 0.0
-        for trial in axis.trials:
-            path = paths[trial]
-            assert path is not None
-            nothing += left_by(comparison, residual, trial, path, residual.trials[trial])
-        runs = _Runs(comparison, residual, axis, min([nothing, *(_ALIKE * left for left, _ in found)]), tell)
-        region = _best_region(runs, nothing, sum(shares[t] for t in axis.trials))
+        most = min([nothing, chosen, *(_HARDLY_MORE * cost for cost, _ in told)])
+        runs = _Runs(comparison, residual, axis, most, tell)
+        region = _best_region(runs, nothing, min(nothing, chosen), sum(shares[trial] for trial in trials))
         if region is not None:
-            found.append((min(runs.known.values()), region))
-    least = min((left for left, _ in found), default=inf)
-    return tuple(region for left, region in found if left <= _ALIKE * least)
+            told.append((min(runs.known.values()), region))
+    least = min((cost for cost, _ in told), default=inf)
+    return tuple(region for cost, region in told if cost <= _HARDLY_MORE * least)
+
+
+def _left(
+    comparison: Comparison,
+    residual: Residual,
+    trials: Sequence[int],
+    paths: Sequence[Path | None] | Mapping[int, Path | None],
+) -> float:
+    """Return what paths leave of some trials, infinite where one could not be run."""
+    cost = 0.0
+    for trial in trials:
+        path = paths[trial]
+        if path is None:
+            return inf
+        cost += left_by(comparison, residual, trial, path, comparison.differences(trial, path, residual))
+    return cost
 
 
 def _cycle(comparison: Comparison, trials: Sequence[int]) -> _Axis | None:
     fields = {trial: comparison.dataset.trials[trial].field for trial in trials}
     frequency = {trial: field.frequency_Hz for trial, field in fields.items() if isinstance(field, RotatingField)}
+    ends_s = {trial: comparison.simulator.nominal(trial).run.duration_s for trial in trials}
     if not frequency:
         return None
 
     def edges(trial: int, ends: Ends) -> tuple[float, ...]:
-        end = end_s(comparison, trial)
-        cycles = np.arange(-2.0, np.ceil(frequency[trial] * end) + 1.0)
+        if trial not in frequency:
+            return ()
+        if ends[1] == inf:
+            return (ends[0],)
+        cycles = np.arange(-2.0, np.ceil(frequency[trial] * ends_s[trial]) + 1.0)
         times = (cycles[:, None] + np.array(ends) / 360.0) / frequency[trial]
-        return tuple(times[(times[:, 1] > 0.0) & (times[:, 0] < end)].ravel().tolist())
+        return tuple(times[(times[:, 1] > 0.0) & (times[:, 0] < ends_s[trial])].ravel().tolist())
+
+    def passage(ends: Ends) -> Passage:
+        return "through" if ends[1] - ends[0] < 360.0 else "none"
 
     width = 360.0 / _PARTS_OF_CYCLE
     starts, parts = range(_PARTS_OF_CYCLE), range(1, _PARTS_OF_CYCLE // 2 + 1)
     families = [(width * first, width * (first + count)) for first, count in product(starts, parts)]
-    return _Axis(
-        "cycle_phase_deg",
-        list(frequency),
-        (_OF_CYCLE,),
-        families,
-        width,
-        360.0,
-        edges,
-        lambda ends: "left" if ends[1] - ends[0] < 360.0 else "none",
-    )
+    # From a moment on, s.
+    moments = np.linspace(0.0, max(ends_s[trial] for trial in frequency), _MOMENTS + 2)[1:-1]
+    families += [(moment, inf) for moment in moments.tolist()]
+    return _Axis("cycle_phase_deg", trials, (_OF_CYCLE,), families, width, 360.0, edges, passage)
 
 
-def _way(
+def _along_y(
     comparison: Comparison, residual: Residual, paths: Sequence[Path | None], trials: Sequence[int]
 ) -> _Axis | None:
     seen: dict[int, tuple[Floats, Floats]] = {}
@@ -241,7 +273,7 @@ def _way(
             continue
         # By the model's clock, while it runs.
         clock = observed.time_s + residual.local[trial, 0] + path.clock_s
-        found = np.isfinite(y) & (clock > 0.0) & (clock < end_s(comparison, trial))
+        found = np.isfinite(y) & (clock > 0.0) & (clock < comparison.simulator.nominal(trial).run.duration_s)
         if np.count_nonzero(found) >= 2:
             seen[trial] = clock[found], y[found] - residual.local[trial, 2]
     if not seen:
@@ -252,15 +284,17 @@ def _way(
         return (y >= ends[0]) & (y < ends[1])
 
     def edges(trial: int, ends: Ends) -> tuple[float, ...]:
+        if trial not in seen:
+            return ()
         time, there = seen[trial][0], inside(trial, ends)
         change = np.flatnonzero(np.diff(there))
         return (*([0.0] if there[0] else []), *(0.5 * (time[change] + time[change + 1])).tolist())
 
-    def comes_through(ends: Ends) -> Way:
+    def passage(ends: Ends) -> Passage:
         there = inside(first, ends)
         if there[0] or not there.any():
             return "none"
-        return "kept" if there[-1] else "left"
+        return "stays" if there[-1] else "through"
 
     # Of the way of the trial that has most of the gap.
     first = next(iter(seen))
@@ -270,54 +304,67 @@ def _way(
     places = np.linspace(np.min(way), np.nextafter(np.max(way), inf), count + 1)
     families = [(low, high) for low, high in combinations(places.tolist(), 2) if inside(first, (low, high)).any()]
     width = float(places[1] - places[0])
-    return _Axis("position_y_m", list(seen), (*_OF_PLACE, _OF_CYCLE), families, width, 0.0, edges, comes_through)
+    # A multiple of no adhesion is none.
+    sticks = comparison.simulator.nominal(first).substrate.adhesion_N_per_m2 > 0.0
+    kinds = (*(_OF_PLACE if sticks else _OF_BARE_PLACE), _OF_CYCLE)
+    return _Axis("position_y_m", trials, kinds, families, width, 0.0, edges, passage)
 
 
-def _best_region(runs: _Runs, nothing: float, share: float) -> Region | None:
+def _best_region(runs: _Runs, nothing: float, all_along: float, share: float) -> Region | None:
     """Return the region in which an effect leaves clearly less than elsewhere, and enough less than nothing does.
 
     Parameters
     ----------
     runs
         Of an axis.
-    nothing
-        What the nominal model leaves.
+    nothing, all_along
+        What the nominal model leaves, and the least that is known of what acts all along.
     share
-        Of the gap, that its trials have.
+        Of the gap, that the trials have.
     """
     axis, known = runs.axis, runs.known
     tables = [_table(axis, ends) for ends in (None, *axis.families)]
-    runs.left([tried for table in tables for tried in table])
-    first = [min(table, key=known.__getitem__) for table in tables]
-    _narrowed(runs, [tried for tried in first if not runs.is_region(tried)])
-    _narrowed(runs, [tried for tried in first if runs.is_region(tried)])
+    runs.cost([tried for table in tables for tried in table])
+    for region in (False, True):
+        those = [[tried for tried in table if runs.is_region(tried) == region] for table in tables]
+        _narrowed(runs, [min(table, key=known.__getitem__) for table in those if table])
     within = [tried for tried in known if runs.is_region(tried)]
     if not within:
         return None
     best = min(within, key=known.__getitem__)
     least = known[best]
-    kept = min((known[tried] for tried in within if axis.way(tried.ends) == "kept"), default=inf)  # type: ignore[arg-type]
-    rest = min([nothing, *(cost for tried, cost in known.items() if not runs.is_region(tried))])
-    share_left = _LEFT_AGAIN if least < kept - runs.clear else _NEVER_LEFT
-    if least >= rest - runs.clear or least > share_left * nothing:
+    wide = max(1.0, least / runs.numbers)
+    stays = min((known[tried] for tried in within if axis.passage(_ends(tried)) == "stays"), default=inf)
+    rest = min([all_along, *(cost for tried, cost in known.items() if not runs.is_region(tried))])
+    most = _THROUGH if least < stays - wide * runs.clear else _STAYS
+    if least >= rest - wide * runs.clear or least > most * nothing:
         return None
+    # What was left before all trials were run weighs next to nothing.
     profile: dict[Ends, float] = {}
     for tried in within:
-        assert tried.ends is not None
-        profile[tried.ends] = min(known[tried], profile.get(tried.ends, inf))
+        if tried in runs.whole:
+            profile[_ends(tried)] = min(known[tried], profile.get(_ends(tried), inf))
     ends = np.array(list(profile))
     if axis.turn:
         # Each as near to the best as it is on the circle.
-        assert best.ends is not None
-        away = ends.mean(axis=1) - 0.5 * (best.ends[0] + best.ends[1])
+        away = ends.mean(axis=1) - np.mean(_ends(best))
         ends -= axis.turn * np.round(away / axis.turn)[:, None]
-    numbers = sum(runs.comparison.weighed[trial] for trial in axis.trials)
-    wide = runs.comparison.alike * max(1.0, least / numbers)
-    weights = np.exp(-(np.array(list(profile.values())) - least) / (2.0 * wide))
+    weights = np.exp(-(np.array(list(profile.values())) - least) / (2.0 * runs.comparison.alike * wide))
     low, high = (weights @ ends / weights.sum()).tolist()
     if axis.turn:
-        low, high = low % axis.turn, low % axis.turn + high - low
-    return Region(axis.name, share * (1.0 - least / nothing), low, high, sigmas=runs.sigmas(), what=_words(runs, best))
+        low, high = _canonical((low, high), axis.turn)
+    return Region(axis.name, share * (1.0 - least / nothing), low, high, what=_words(runs, best))
+
+
+def _ends(tried: _Tried) -> Ends:
+    assert tried.ends is not None
+    return tried.ends
+
+
+def _canonical(ends: Ends, turn: float) -> Ends:
+    """Return a region on a circle with its start within the first turn."""
+    back = turn * np.floor(ends[0] / turn)
+    return float(ends[0] - back), float(ends[1] - back)
 
 
 def _words(runs: _Runs, best: _Tried) -> str:
@@ -327,19 +374,24 @@ def _words(runs: _Runs, best: _Tried) -> str:
     for effect in runs.axis.kinds[best.kind].effects(best.strength, scenario):
         match effect:
             case AdhesionCoefficient():
-                said.append(f"{effect.factor:.2g} times the adhesion")
+                said.append(f"{_times(effect.factor)} the adhesion")
             case ElectrostaticForce():
-                said.append(f"{effect.added_force_N:.2g} N more attraction")
+                said.append(f"{plain(effect.added_force_N, 'N')} more attraction")
             case FrictionCoefficient():
-                said.append(f"{effect.factor:.2g} times the friction")
+                said.append(f"{_times(effect.factor)} the friction")
             case MagnetizationStrength():
-                said.append(f"{effect.factor:.2g} times the magnetic torque")
+                said.append(f"{_times(effect.factor)} the magnetic torque")
     return " and ".join(said)
+
+
+def _times(factor: float) -> str:
+    # Two digits, written out.
+    return f"{float(f'{factor:.2g}'):g} times"
 
 
 def _table(axis: _Axis, ends: Ends | None) -> list[_Tried]:
     """Return what is tried of a region, or of all, first."""
-    alone = axis.turn == 0.0 and (ends is None or axis.way(ends) != "kept")
+    alone = axis.turn == 0.0 and (ends is None or axis.passage(ends) != "stays")
     kinds = axis.kinds[:-1] if alone else axis.kinds
     return [_Tried(ends, k, strength) for k, kind in enumerate(kinds) for strength in kind.scale]
 
@@ -357,7 +409,7 @@ def _narrowed(runs: _Runs, those: Sequence[_Tried]) -> None:
         those = sorted(those, key=runs.known.__getitem__)[:count]
         for _ in range(_MOVES):
             tables = [[tried, *_beside(runs, tried, 0.5**halving)] for tried in those]
-            runs.left([tried for table in tables for tried in table])
+            runs.cost([tried for table in tables for tried in table])
             those = list(dict.fromkeys(min(table, key=runs.known.__getitem__) for table in tables))
 
 
@@ -367,12 +419,16 @@ def _beside(runs: _Runs, tried: _Tried, share: float) -> Iterable[_Tried]:
     more, move = share * _step(axis, tried), share * axis.width
     for strength in (tried.strength - more, tried.strength + more):
         yield tried._replace(strength=strength)
-    if tried.ends is None or not runs.is_region(tried):
+    if tried.ends is None or tried.ends[1] == inf:
         return
     low, high = tried.ends
-    for ends in ((low - move, high), (low + move, high), (low, high - move), (low, high + move)):
-        if ends[0] < ends[1] and axis.way(ends) != "none":
-            yield tried._replace(ends=ends)
+    moved = [(low - move, high), (low + move, high)]
+    if runs.is_region(tried):
+        moved += [(low, high - move), (low, high + move)]
+    for ends in moved:
+        beside = tried._replace(ends=_canonical(ends, axis.turn) if axis.turn else ends)
+        if ends[0] < ends[1] and runs.is_region(beside) == runs.is_region(tried):
+            yield beside
 
 
 class _Runs:
@@ -393,34 +449,39 @@ class _Runs:
     def __init__(self, comparison: Comparison, residual: Residual, axis: _Axis, most: float, tell: OnPhase) -> None:
         self.comparison, self.residual, self.axis, self.tell = comparison, residual, axis, tell
         self.known: dict[_Tried, float] = {}
-        self.clear = comparison.objective_of(CLEAR_LN + log(_MOST_RUNS))
+        # Those of which all trials were run.
+        self.whole: set[_Tried] = set()
+        self.clear = comparison.objective_of(CLEAR_LN + log(len(axis.families) * len(axis.kinds)))
+        self.numbers = sum(comparison.weighed[trial] for trial in axis.trials)
         self._most = most
+        rows = max(comparison.simulator.nominal(trial).run.duration_s for trial in axis.trials) / _ROW_S
+        self._at_once = int(np.clip(_MOST_ROWS / rows, 1, _AT_ONCE))
+        expected = sum(len(_table(axis, ends)) for ends in (None, *axis.families)) + 6 * _MOVES * sum(_FOLLOWED)
+        self._told = f"in which part of the {'cycle' if axis.turn else 'way'} something else acts", expected
 
     def is_region(self, tried: _Tried) -> bool:
         """Return whether something that the axis is asked for acts in a region that a trial came to."""
-        if tried.ends is None or self.axis.way(tried.ends) == "none":
+        if tried.ends is None or self.axis.passage(tried.ends) == "none":
             return False
         return self.axis.turn > 0.0 or tried.kind < len(self.axis.kinds) - 1
 
-    def sigmas(self) -> float:
-        """Return the root mean square difference of the nominal model in the trials' tracks."""
-        floors, trials = self.comparison.floors, self.residual.trials
-        tracks = np.concatenate([trials[trial][: floors[trial].tracked] for trial in self.axis.trials])
-        return float(np.sqrt(robust_cost(tracks) / len(tracks)))
-
-    def left(self, those: Sequence[_Tried]) -> list[float]:
-        """Return what the model leaves with each, or so much that it is of no use; infinite if it cannot run."""
+    def cost(self, those: Sequence[_Tried]) -> list[float]:
+        """Return C with each, or so much of it that it is of no use; infinite if it cannot run."""
         new = [tried for tried in dict.fromkeys(those) if tried not in self.known]
-        for first in range(0, len(new), _AT_ONCE):
-            self.tell("in which part something else acts", len(self.known), _MOST_RUNS)
+        for first in range(0, len(new), self._at_once):
+            phase, expected = self._told
+            self.tell(phase, min(len(self.known), expected), expected)
             # What leaves more of some trials than another of all is left there: none leaves less than nothing.
-            left = dict.fromkeys(new[first : first + _AT_ONCE], 0.0)
+            left = dict.fromkeys(new[first : first + self._at_once], 0.0)
+            most = self._most + self.clear * max(1.0, self._most / self.numbers)
+            some = list(left)
             for trial in self.axis.trials:
-                some = [tried for tried in left if left[tried] <= self._most + self.clear]
+                some = [tried for tried in some if left[tried] <= most]
                 for tried, path in zip(some, self._paths(trial, some), strict=True):
                     left[tried] += inf if path is None else self._left_of(trial, path)
             self.known |= left
-            self._most = min(self._most, *left.values())
+            self.whole.update(some)
+            self._most = min([self._most, *(left[tried] for tried in some)])
         return [self.known[tried] for tried in those]
 
     def _paths(self, trial: int, those: Sequence[_Tried]) -> list[Path | None]:

@@ -19,11 +19,12 @@ alone (`in_part`), if there is one: what is wrong from somewhere on shows where 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..effects.base import Effect
 from ..progress import OnPhase
 from .cells import MODES, Cells
 from .comparison import Comparison, Residual
@@ -78,6 +79,7 @@ def localise(
     residual: Residual,
     paths: Sequence[Path | None],
     unexplained: bool = False,
+    effects: tuple[Effect, ...] = (),
     on_phase: OnPhase | None = None,
 ) -> tuple[tuple[Region, ...], tuple[HeatMap, ...]]:
     """Return the regions of the gap, the greatest share first, and maps of it.
@@ -92,6 +94,8 @@ def localise(
         The nominal model's.
     unexplained
         Whether no effect that acts all along explains the gap, so that one is looked for that acts in a part alone.
+    effects
+        The best that act all along.
     on_phase
         Is told the phase, how much of it is done, and of how much.
 
@@ -110,14 +114,25 @@ def localise(
         begun = {region.axis: region for region in found if region is not None}
         if unexplained and "time_s" not in begun:
             shares = [next((r.share_of_gap for r in regions if r.value == name), 0.0) for name in ids]
-            parts = acts_in_part(comparison, residual, paths, shares, on_phase)
-            begun = {part.axis: part for part in parts} or begun
+            parts = acts_in_part(comparison, residual, paths, shares, effects, on_phase)
+            # Where it began to show along the other axis is not where it acts.
+            begun = {part.axis: _with_sigmas(cells, part) for part in parts} or begun
         for axis in axes.values():
             regions += [begun[axis.name]] if axis.name in begun else _interval(cells, axis, total)
         regions += _values(cells, "contact_mode", cells.mode, MODES, total)
         regions += _values(cells, "channel", cells.channel, CHANNELS, total)
     regions.sort(key=lambda region: -region.share_of_gap)
     return tuple(regions), _maps(cells, ids, axes)
+
+
+def _with_sigmas(cells: Cells, part: Region) -> Region:
+    """Return a part of the cycle or of the way with how far off the numbers in it are."""
+    assert part.low is not None
+    assert part.high is not None
+    cycle = part.axis == "cycle_phase_deg"
+    beyond = (cells.phase_deg - part.low) % 360.0 if cycle else cells.y_m - part.low
+    inside = (beyond >= 0.0) & (beyond <= part.high - part.low)
+    return replace(part, sigmas=_rms(cells, inside)) if inside.any() else part
 
 
 def _sums(place: Ints, values: Floats, count: int) -> Floats:

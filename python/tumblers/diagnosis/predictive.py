@@ -15,7 +15,7 @@ from .comparison import Comparison, Residual
 from .loss import huber, robust_cost
 from .reading import BORDERS, reached
 
-__all__ = ["contradicted", "is_right", "is_wanting", "mean_square", "mean_squares"]
+__all__ = ["contradicted", "is_right", "is_wanting", "leaves_a_gap", "mean_square", "mean_squares"]
 
 # A right model's mean square over all of many numbers, and in its worst trial.
 _EXPLAINED, _WORST = 1.25, 2.0
@@ -76,6 +76,17 @@ def contradicted(comparison: Comparison, residual: Residual) -> NDArray[np.bool_
 def is_wanting(comparison: Comparison, residual: Residual) -> bool:
     """Whether a hypothesis leaves a gap that something else may close, even where it passes the test."""
     return mean_square(comparison, residual) > _WANTING
+
+
+def leaves_a_gap(values: NDArray[np.float64]) -> bool:
+    """Return whether some differences are more than likeliest noise.
+
+    Parameters
+    ----------
+    values
+        Whitened, shape (n,), n ≥ 1.
+    """
+    return robust_cost(values) / len(values) > _WANTING
 
 
 def _worst(count: NDArray[np.int_]) -> NDArray[np.float64]:

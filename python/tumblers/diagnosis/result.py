@@ -133,7 +133,7 @@ class Region:
     axis
         One of the contract's axes, such as ``frequency_Hz`` or ``contact_mode``.
     share_of_gap
-        Of the squared gap above the noise.
+        Of the squared gap above the noise; with `what`, how much of it that takes.
     low, high
         For an axis of numbers.
     value
@@ -141,7 +141,7 @@ class Region:
     sigmas
         Root mean square difference there, over what noise would give.
     what
-        What acts there and not elsewhere, where that is known.
+        What may act there and not elsewhere, such as ``0.12 times the magnetic torque``.
     """
 
     axis: str

@@ -338,15 +338,17 @@ class Simulator:
             self._kept -= _size(self._known.popitem(last=False)[1])
         return paths
 
-    def _run_of(self, scenario: Scenario, job: Job) -> _Run:
+    def _run_of(self, scenario: Scenario, job: Job) -> _Run | None:
         drawn = None
         if job.nudge is not None and self.guides[job.trial] is not None:
             drawn = _Drawn(job.trial, (scenario.camera, job.nudge.sensor), job.nudge.rate_per_s)
         other = None
         if job.interlude is not None:
             effects, edges = job.interlude
-            within = replace(job, effects=(*job.effects, *effects), interlude=None)
-            other = _Other(_unseen(self.scenario(within)), edges)
+            beside = self._possible(replace(job, effects=(*job.effects, *effects), interlude=None))
+            if beside is None:
+                return None
+            other = _Other(_unseen(beside), edges)
         return _Run(_unseen(scenario), drawn, other)
 
     def _native(self, run: _Run) -> _core.Trial:

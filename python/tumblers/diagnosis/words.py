@@ -312,12 +312,22 @@ def _where(diagnosis: Diagnosis) -> str:
         words = [region_words(region) for region in regions[:_MOST_VALUES]]
         more = len(regions) - len(words)
         extent = ", ".join(extent for _, extent in words) + (f" and {more} more" if more else "")
-        # What acts in a part alone is known of one at most.
-        extent += "".join(f", as if with {region.what} there" for region in regions if region.what is not None)
         share = min(sum(region.share_of_gap for region in regions), 1.0)
         plural = "s" if len(regions) > 1 and words[0][0] in ("trial", "channel") else ""
         said.append(f"{percent(share)} of the gap at {words[0][0]}{plural} {extent}")
-    return "; ".join(said) + "."
+    return "; ".join(said) + "." + _in_parts(diagnosis)
+
+
+def _in_parts(diagnosis: Diagnosis) -> str:
+    """Return in which part of the data alone something may act, and what."""
+    parts = []
+    for region in diagnosis.where:
+        if region.what is not None:
+            axis, extent = region_words(region)
+            parts.append(
+                f"{region.what} at {axis} {extent} alone, {percent(region.share_of_gap)} of the gap would be gone"
+            )
+    return f" With {'; or about as well, with '.join(parts)}." if parts else ""
 
 
 def _missing(diagnosis: Diagnosis) -> Iterator[str]:
