@@ -11,7 +11,7 @@ import pytest
 from tumblers.blind.law import Law
 from tumblers.blind.outside import AmplifierDropout, FadingMagnet, PhaseJump, StickySpot
 from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.in_part import _along_y, _cycle, _Runs, _table, acts_in_part
+from tumblers.diagnosis.in_part import _along_y, _best_region, _cycle, _Runs, _table, acts_in_part
 from tumblers.diagnosis.localise import localise
 from tumblers.diagnosis.result import Region
 from tumblers.diagnosis.simulator import Interlude, Job
@@ -111,6 +111,10 @@ def test_what_is_left_before_all_trials_were_run_is_clear_of_the_best() -> None:
     # Of some of the trials.
     assert np.all(left[~whole] < every[~whole])
     assert np.all(left[~whole] > every.min() + some.clear)
+    # Where something else leaves nothing, none is run in all trials, and none is told.
+    hopeless = _Runs(comparison, residual, axis, 0.0, lambda *_: None)
+    assert _best_region(hopeless, 1e9, 1e9, 1.0) is None
+    assert not hopeless.whole
 
 
 def test_a_region_of_the_cycle_is_within_the_same_phases_of_each_cycle() -> None:

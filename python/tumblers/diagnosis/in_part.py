@@ -213,7 +213,7 @@ def acts_in_part(
         runs = _Runs(comparison, residual, axis, most, tell)
         region = _best_region(runs, nothing, min(nothing, chosen), sum(shares[trial] for trial in trials))
         if region is not None:
-            told.append((min(runs.known.values()), region))
+            told.append((min(runs.known[tried] for tried in runs.whole), region))
     least = min((cost for cost, _ in told), default=inf)
     return tuple(region for cost, region in told if cost <= _HARDLY_MORE * least)
 
@@ -328,22 +328,22 @@ def _best_region(runs: _Runs, nothing: float, all_along: float, share: float) ->
     for region in (False, True):
         those = [[tried for tried in table if runs.is_region(tried) == region] for table in tables]
         _narrowed(runs, [min(table, key=known.__getitem__) for table in those if table])
-    within = [tried for tried in known if runs.is_region(tried)]
+    regions = [tried for tried in known if runs.is_region(tried)]
+    # What was left before all trials were run is of no use, however little some of them have.
+    within = [tried for tried in regions if tried in runs.whole]
     if not within:
         return None
     best = min(within, key=known.__getitem__)
     least = known[best]
     wide = max(1.0, least / runs.numbers)
-    stays = min((known[tried] for tried in within if axis.passage(_ends(tried)) == "stays"), default=inf)
+    stays = min((known[tried] for tried in regions if axis.passage(_ends(tried)) == "stays"), default=inf)
     rest = min([all_along, *(cost for tried, cost in known.items() if not runs.is_region(tried))])
     most = _THROUGH if least < stays - wide * runs.clear else _STAYS
     if least >= rest - wide * runs.clear or least > most * nothing:
         return None
-    # What was left before all trials were run weighs next to nothing.
     profile: dict[Ends, float] = {}
     for tried in within:
-        if tried in runs.whole:
-            profile[_ends(tried)] = min(known[tried], profile.get(_ends(tried), inf))
+        profile[_ends(tried)] = min(known[tried], profile.get(_ends(tried), inf))
     ends = np.array(list(profile))
     if axis.turn:
         # Each as near to the best as it is on the circle.
