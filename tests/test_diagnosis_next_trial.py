@@ -14,10 +14,11 @@ from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.fitter import Fitter
 from tumblers.diagnosis.foretold import CLIMBS, RUNS, SLIDES, STAYS, Said, foretell
 from tumblers.diagnosis.information import information
+from tumblers.diagnosis.job import Job
 from tumblers.diagnosis.next_trial import in_one_step, next_trials
 from tumblers.diagnosis.posterior import samples
 from tumblers.diagnosis.result import NextTrial
-from tumblers.diagnosis.simulator import LONGEST_STEP_S, Job, Simulator
+from tumblers.diagnosis.simulator import LONGEST_STEP_S, Simulator
 from tumblers.effects import get
 from tumblers.effects.base import Effect
 from tumblers.effects.contact_compliance import ContactCompliance

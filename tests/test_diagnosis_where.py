@@ -7,10 +7,11 @@ import pytest
 
 from tumblers.dataset import Dataset, LabTrial, Outcome, Sensor, Track
 from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.job import Job
 from tumblers.diagnosis.localise import localise
 from tumblers.diagnosis.pose import body_axis, heading_of, tilt_of
 from tumblers.diagnosis.result import HeatMap, Region
-from tumblers.diagnosis.simulator import Job, Simulator
+from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects import get
 from tumblers.effects.base import Effect
 from tumblers.field import Field, StaticField

@@ -7,9 +7,10 @@ import pytest
 
 from tumblers.dataset import Dataset, LabTrial, Outcome, Sensor, Track
 from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.job import Job
 from tumblers.diagnosis.pose import body_axis, tilt_of
 from tumblers.diagnosis.result import MissingWrench
-from tumblers.diagnosis.simulator import Job, Simulator
+from tumblers.diagnosis.simulator import Simulator
 from tumblers.diagnosis.wrench import missing_wrench, wrench_regions
 from tumblers.diagnosis.wrench_maps import mapped
 from tumblers.diagnosis.wrench_means import Windows

@@ -14,8 +14,9 @@ from tumblers import _core
 from tumblers.dataset import Dataset, LabTrial, Outcome, Sensor, Track
 from tumblers.diagnosis.comparison import Comparison, Residual
 from tumblers.diagnosis.fitter import Fitter
+from tumblers.diagnosis.job import Job
 from tumblers.diagnosis.pose import body_axis, heading_of, tilt_of
-from tumblers.diagnosis.simulator import LONGEST_STEP_S, Job, Simulator
+from tumblers.diagnosis.simulator import LONGEST_STEP_S, Simulator
 from tumblers.effects.base import Effect
 from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.field import Field, StaticField

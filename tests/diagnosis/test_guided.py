@@ -16,9 +16,10 @@ from tumblers.diagnosis.contender import Contender
 from tumblers.diagnosis.fitter import Fitter
 from tumblers.diagnosis.guided import _Cloud, _spread, found_again
 from tumblers.diagnosis.hypothesis import Hypothesis
+from tumblers.diagnosis.job import Job
 from tumblers.diagnosis.own_noise import settled_at
 from tumblers.diagnosis.search import Search
-from tumblers.diagnosis.simulator import Job, Simulator
+from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.effects.magnetization_misalignment import MagnetizationMisalignment
 from tumblers.effects.magnetization_strength import MagnetizationStrength

@@ -12,9 +12,9 @@ from tumblers.blind.law import Law
 from tumblers.blind.outside import AmplifierDropout, FadingMagnet, PhaseJump, StickySpot
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.in_part import _along_y, _best_region, _cycle, _Runs, _table, acts_in_part
+from tumblers.diagnosis.job import Interlude, Job
 from tumblers.diagnosis.localise import localise
 from tumblers.diagnosis.result import Region
-from tumblers.diagnosis.simulator import Interlude, Job
 from tumblers.effects import get
 from tumblers.effects.base import Effect
 from tumblers.effects.electrostatic_force import ElectrostaticForce

@@ -12,9 +12,10 @@ from tumblers.dataset import Dataset, Outcome
 from tumblers.diagnosis import built_floors
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.fitter import Fitter
+from tumblers.diagnosis.job import Job
 from tumblers.diagnosis.objective import _SHARES
 from tumblers.diagnosis.pose import Path
-from tumblers.diagnosis.simulator import Job, Simulator
+from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects.base import Effect
 from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.effects.magnetization_misalignment import MagnetizationMisalignment

@@ -10,9 +10,10 @@ from numpy.testing import assert_allclose
 
 from tumblers.dataset import Dataset, LabTrial, Track
 from tumblers.diagnosis.comparison import Comparison
+from tumblers.diagnosis.job import Job
 from tumblers.diagnosis.observed import observe
 from tumblers.diagnosis.reading import reached
-from tumblers.diagnosis.simulator import Job, Simulator
+from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects.adhesion_coefficient import AdhesionCoefficient
 from tumblers.field import StaticField
 

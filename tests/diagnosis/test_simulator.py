@@ -11,7 +11,8 @@ from tumblers.dataset import Dataset, Sensor, Track
 from tumblers.diagnosis import simulator as simulators
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.guide import Nudge
-from tumblers.diagnosis.simulator import Job, Simulator
+from tumblers.diagnosis.job import Job
+from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects.base import Effect
 from tumblers.effects.camera_calibration import CameraCalibration
 from tumblers.effects.center_of_mass_offset import CenterOfMassOffset

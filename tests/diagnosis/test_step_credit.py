@@ -10,9 +10,10 @@ from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.conclusion import in_steps_of
 from tumblers.diagnosis.contender import of_nominal
 from tumblers.diagnosis.hypothesis import Hypothesis
+from tumblers.diagnosis.job import Job
 from tumblers.diagnosis.own_noise import against_itself
 from tumblers.diagnosis.search import Search
-from tumblers.diagnosis.simulator import LONGEST_STEP_S, Job, Simulator
+from tumblers.diagnosis.simulator import LONGEST_STEP_S, Simulator
 from tumblers.diagnosis.step_credit import step_credit
 from tumblers.effects.contact_compliance import ContactCompliance
 from tumblers.effects.friction_coefficient import FrictionCoefficient

@@ -17,7 +17,8 @@ from tumblers.dataset import Dataset, Outcome
 from tumblers.diagnosis import built_floors
 from tumblers.diagnosis.comparison import Comparison, Residual
 from tumblers.diagnosis.floor import SHARED
-from tumblers.diagnosis.simulator import Job, Simulator
+from tumblers.diagnosis.job import Job
+from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects import get
 from tumblers.effects.base import Effect
 

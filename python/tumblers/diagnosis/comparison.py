@@ -16,12 +16,13 @@ from ..dataset import Dataset
 from ..effects.base import Effect
 from .built_floors import BuiltFloors
 from .floor import Floor, Sensitivity, choose_steps, measure_sensitivity
+from .job import Job
 from .loss import weight_of
 from .nuisances import Fitted, NuisanceFit
 from .observed import observe
 from .pose import Path
 from .reading import Reader
-from .simulator import Job, Simulator
+from .simulator import Simulator
 from .stretch import Stretch
 
 __all__ = ["Comparison", "Residual"]

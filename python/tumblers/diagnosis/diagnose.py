@@ -27,6 +27,7 @@ from .fitter import Fitter
 from .floor import TOLERANCES
 from .held_out import HeldOut, folds, held_out, is_foretold, shrink
 from .hypothesis import SECOND
+from .job import Job
 from .localise import localise
 from .loss import robust_cost
 from .next_trial import in_one_step, next_trials
@@ -35,7 +36,7 @@ from .own_noise import lead_around
 from .posterior import samples
 from .predictive import is_right
 from .result import EffectEstimate, HeatMap, Interval, NextTrial, RankedHypothesis, Region, TrialFloor, Verdict
-from .simulator import Job, Simulator
+from .simulator import Simulator
 from .tracked_point import with_tracked_point
 from .verdict import judge, refused, ties
 from .wrench import missing_wrench, wrench_regions

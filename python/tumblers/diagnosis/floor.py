@@ -39,9 +39,10 @@ from ..effects.base import Effect
 from ..effects.size_error import SizeError
 from ..field import RotatingField, StaticField, TableField
 from ..scenario import Scenario
+from .job import Edit, Job
 from .pose import Path
 from .reading import BORDERS, Reader
-from .simulator import SHORTEST_STEP_S, Edit, Job, Simulator
+from .simulator import SHORTEST_STEP_S, Simulator
 
 __all__ = [
     "MOST_OFF",

@@ -21,9 +21,9 @@ from .fit import Fit
 from .fitter import Fitter
 from .floor import SHARED
 from .hypothesis import PRIOR_SIGMA
+from .job import Job
 from .loss import robust_cost
 from .result import Gap, Interval
-from .simulator import Job
 from .thresholds import CLEAR
 
 __all__ = ["HeldOut", "folds", "held_out", "is_foretold", "shrink"]

@@ -39,11 +39,11 @@ from ..field import RotatingField
 from ..progress import OnPhase
 from ..scenario import Scenario
 from .comparison import Comparison, Residual
+from .job import Interlude, Job
 from .onset import CLEAR_LN
 from .pose import Path
 from .quantity import plain
 from .result import Region
-from .simulator import Interlude, Job
 from .wrench_trial import left_by
 
 __all__ = ["acts_in_part"]

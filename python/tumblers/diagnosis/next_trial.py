@@ -17,9 +17,10 @@ from ..effects.base import Effect
 from .candidate import Candidate, candidates, turned
 from .foretold import CLIMBS, RUNS, SLIDES, STAYS, Foretold, Said, foretell
 from .information import information
+from .job import Job
 from .quantity import enumerated
 from .result import NextTrial
-from .simulator import Job, Simulator
+from .simulator import Simulator
 
 __all__ = ["in_one_step", "next_trials"]
 

@@ -27,9 +27,9 @@ from .comparison import Comparison, Residual
 from .fit import Fit
 from .guide import Nudge
 from .hypothesis import PRIOR_SIGMA, Hypothesis
+from .job import Job
 from .loss import FAR, robust_cost
 from .pose import Path
-from .simulator import Job
 
 __all__ = ["Objective"]
 

@@ -9,10 +9,10 @@ from .comparison import Comparison
 from .contender import Contender
 from .fitter import Fitter
 from .held_out import HeldOut
+from .job import Job
 from .pose import Path, body_axis, heading_of, tilt_of
 from .reading import seen_by
 from .result import Overlay
-from .simulator import Job
 
 __all__ = ["overlays"]
 

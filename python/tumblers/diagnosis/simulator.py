@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import ceil, inf
 from typing import NamedTuple
 
@@ -22,10 +22,11 @@ from ..field import RotatingField, TableField
 from ..model import RELEASED_TORQUE, Model
 from ..progress import native_call
 from ..scenario import Scenario
-from .guide import Guide, Nudge
+from .guide import Guide
+from .job import Job
 from .pose import Path
 
-__all__ = ["LONGEST_STEP_S", "SHORTEST_STEP_S", "Edit", "Interlude", "Job", "Simulator", "longest_step_s"]
+__all__ = ["LONGEST_STEP_S", "SHORTEST_STEP_S", "Simulator", "longest_step_s", "rows_per_s"]
 
 # Rows of a path: no farther apart than this, and so many in a cycle of the field.
 _LONGEST_INTERVAL_S = 2e-3
@@ -43,55 +44,7 @@ _MOST_ROWS = 500_000
 # Bytes of paths that are kept: a fit often comes back to a point, and the search to a fit.
 _MOST_KEPT = 256_000_000
 
-Edit = Callable[[Scenario], Scenario]
 Floats = NDArray[np.float64]
-
-
-class Interlude(NamedTuple):
-    """Effects that are at work in parts of a run alone, beside those that are all along.
-
-    Attributes
-    ----------
-    effects
-        They leave the body as it is.
-    edges_s
-        They begin at the first, s, end at the second, begin again at the third, and so on; increasing.
-    """
-
-    effects: tuple[Effect, ...]
-    edges_s: tuple[float, ...]
-
-
-@dataclass(frozen=True, eq=False)
-class Job:
-    """One trial to simulate.
-
-    Attributes
-    ----------
-    trial
-        Its place in the dataset.
-    effects
-        What is added to the nominal model.
-    divisor
-        By how much the trial's step is divided.
-    edit
-        A change of the scenario beside the effects.
-    share
-        How much of the trial's time is simulated, up to 1.
-    nudge
-        How the run is drawn along y to where the robot was seen. If None, or where the trial has no `Guide`, or its
-        camera shows too little of y (`Guide.behind`), it is on its own.
-    interlude
-        What is at work in parts of the run alone.
-    """
-
-    trial: int
-    effects: tuple[Effect, ...] = ()
-    divisor: int = 1
-    edit: Edit | None = None
-    share: float = 1.0
-    nudge: Nudge | None = None
-    interlude: Interlude | None = None
 
 
 class _Drawn(NamedTuple):
@@ -169,7 +122,7 @@ class Simulator:
             raise InputError("sensor.frames_per_second", found, expected)
         lasts = [_lengthened_s(t.field, t.duration_s, self._late_s(i)) for i, t in enumerate(trials)]
         # Floats: a product that is past them is too long as well.
-        rows = np.floor([time * _rows_per_s(trial.field) for time, trial in zip(lasts, trials, strict=True)])
+        rows = np.floor([time * rows_per_s(trial.field) for time, trial in zip(lasts, trials, strict=True)])
         if rows.sum() > _MOST_ROWS:
             most = int(np.argmax(rows))
             trial, more = trials[most], lasts[most] - trials[most].duration_s
@@ -444,11 +397,12 @@ def longest_step_s(scenario: Scenario) -> float:
     return longest
 
 
-def _rows_per_s(field: object) -> float:
+def rows_per_s(field: object) -> float:
+    """Return how many rows a path has in a field, 1/s."""
     least = 1.0 / _LONGEST_INTERVAL_S
     return max(least, _ROWS_PER_CYCLE * field.frequency_Hz) if isinstance(field, RotatingField) else least
 
 
 def _rows_every(scenario: Scenario) -> int:
-    longest = 1.0 / _rows_per_s(scenario.field)
+    longest = 1.0 / rows_per_s(scenario.field)
     return max(1, min(int(longest / scenario.run.fixed_step_s + 1e-9), scenario.run.steps))

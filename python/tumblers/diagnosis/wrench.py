@@ -25,10 +25,10 @@ from numpy.typing import NDArray
 from ..field import RotatingField
 from .cells import MODES
 from .comparison import Comparison, Residual
+from .job import Job
 from .loss import HUBER
 from .pose import Path
 from .result import MissingWrench
-from .simulator import Job
 from .wrench_maps import mapped, wrench_regions
 from .wrench_means import Windows
 from .wrench_pieces import HALF_A_CYCLE, Pieces, along, at_rest, within_cycles

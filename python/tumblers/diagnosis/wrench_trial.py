@@ -17,9 +17,9 @@ from ..field import TableField
 from ..scenario import Scenario
 from ..surroundings import Surroundings
 from .comparison import Comparison, Residual
+from .job import Edit
 from .loss import HUBER, robust_cost
 from .pose import Path
-from .simulator import Edit
 from .wrench_pieces import Pieces
 
 __all__ = ["added", "derivative_steps", "end_s", "left_by", "nuisance_columns", "nuisances_present", "prior_sigma"]
