@@ -28,6 +28,7 @@ from .comparison import Comparison, Residual
 from .job import Job
 from .loss import HUBER
 from .pose import Path
+from .remainder import left_by, nuisance_columns, nuisances_present
 from .result import MissingWrench
 from .wrench_maps import mapped, wrench_regions
 from .wrench_means import Windows
@@ -36,9 +37,6 @@ from .wrench_trial import (
     added,
     derivative_steps,
     end_s,
-    left_by,
-    nuisance_columns,
-    nuisances_present,
     prior_sigma,
 )
 

@@ -1,28 +1,20 @@
-"""One trial with a wrench added: the wrench's units, the scenario with it, and what the model leaves with it.
-
-What is left is that of `missing_wrench`: Huber's loss of the whitened differences with the sensor's nuisances and the
-nominal numbers at their best, and what these cost, all of them linearised.
-"""
+"""One trial with a wrench added: the wrench's units, and the scenario with it."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..effects.parameter import Nuisance
 from ..field import TableField
 from ..scenario import Scenario
 from ..surroundings import Surroundings
-from .comparison import Comparison, Residual
+from .comparison import Comparison
 from .job import Edit
-from .loss import HUBER, robust_cost
-from .pose import Path
 from .wrench_pieces import Pieces
 
-__all__ = ["added", "derivative_steps", "end_s", "left_by", "nuisance_columns", "nuisances_present", "prior_sigma"]
+__all__ = ["added", "derivative_steps", "end_s", "prior_sigma"]
 
 Floats = NDArray[np.float64]
 
@@ -102,57 +94,3 @@ def added(pieces: Pieces, wrench: Floats) -> Edit:
         return replace(scenario, surroundings=table)
 
     return edit
-
-
-def nuisance_columns(comparison: Comparison, residual: Residual, trial: int, path: Path) -> Floats:
-    """Return the whitened columns of the nuisances in units of their priors, shape (n, m).
-
-    Parameters
-    ----------
-    comparison, residual
-        The dataset, and the nominal model with its nuisances.
-    trial
-        Its place in the dataset.
-    path
-        The model's with a wrench or without.
-    """
-    floor = comparison.floors[trial]
-    found = comparison.readers[trial].linearised(path, residual.local[trial], residual.camera)
-    # The last column is the difference itself.
-    parts = [floor.whiten[name] @ found[name][kept, :-1] for name, kept in floor.valid.items()]
-    rows = np.concatenate([*parts, np.zeros((len(floor.outcome_scale), len(get_args(Nuisance)) + 2))])
-    sigmas = np.concatenate([comparison.nuisances.local_sigmas[trial], comparison.nuisances.shared_sigmas])
-    return np.asarray(np.hstack([rows, -floor.tolerance]) * sigmas, dtype=np.float64)
-
-
-def nuisances_present(comparison: Comparison, residual: Residual, trial: int) -> Floats:
-    """Return how far the nuisances are off already, in units of their priors, shape (m,).
-
-    What they took of the gap under the nominal model costs them, so that a wrench can take it back.
-
-    Parameters
-    ----------
-    comparison, residual, trial
-        As in `nuisance_columns`.
-    """
-    shared = np.concatenate([residual.camera, residual.tolerance]) / comparison.nuisances.shared_sigmas
-    return np.concatenate([residual.local[trial] / comparison.nuisances.local_sigmas[trial], shared])
-
-
-def left_by(comparison: Comparison, residual: Residual, trial: int, path: Path, values: Floats) -> float:
-    """Return what the model leaves of a trial, the nuisances at their best.
-
-    Parameters
-    ----------
-    comparison, residual, trial, path
-        As in `nuisance_columns`.
-    values
-        The path's whitened differences, shape (n,).
-    """
-    n, present = nuisance_columns(comparison, residual, trial, path), nuisances_present(comparison, residual, trial)
-    weight = np.sqrt(np.minimum(1.0, HUBER / np.maximum(np.abs(values), 1e-12)))[:, None]
-    best = -np.linalg.solve(
-        (n * weight).T @ (n * weight) + np.eye(n.shape[1]), (n * weight).T @ (values * weight[:, 0]) + present
-    )
-    off = best + present
-    return robust_cost(values + n @ best) + float(off @ off)

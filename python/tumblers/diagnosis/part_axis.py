@@ -1,0 +1,215 @@
+"""`Axis`: what regions are parts of, the cycle of the field or the way along y, and what is tried of them first."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import combinations, product
+from math import floor, inf
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..field import RotatingField
+from .acting import DRIVE, Kind, of_place
+from .comparison import Comparison, Residual
+from .pose import Path
+
+__all__ = ["Axis", "Ends", "Tried", "along_y", "cycle"]
+
+Floats = NDArray[np.float64]
+Ends = tuple[float, float]
+# Whether a trial that was not in a region at first leaves it again or stays; what it was in at first is no region.
+Passage = Literal["through", "stays", "none"]
+
+# Parts of a cycle, of which a region has half at first; of a way so many at most, or this share of the body's length.
+_PARTS_OF_CYCLE, _MOST_PARTS, _PART_OF_BODY = 12, 10, 0.25
+# Moments from which on the field may drive a robot by less.
+_MOMENTS = 10
+
+
+class Tried(NamedTuple):
+    """Effects in a region.
+
+    Attributes
+    ----------
+    ends
+        From where to where; None for all of the data.
+    kind, strength
+        What acts, and how much of it.
+    is_part
+        Whether it is what is looked for; else it is what that has to beat.
+    """
+
+    ends: Ends | None
+    kind: Kind
+    strength: float
+    is_part: bool
+
+
+@dataclass(frozen=True)
+class Axis:
+    """What regions are parts of.
+
+    Attributes
+    ----------
+    name
+        Of the contract's axes.
+    noun
+        What it is called.
+    trials
+        That are looked at, the most of the gap first.
+    first
+        What is tried first, together what differs by kind and strength alone.
+    width
+        Of a part.
+    turn
+        After which it comes again, 0 if never.
+    edges
+        Between which times, s, a trial is within a region.
+    passage
+        How the trial that has most of the gap comes through a region.
+    """
+
+    name: str
+    noun: str
+    trials: Sequence[int]
+    first: Sequence[Sequence[Tried]]
+    width: float
+    turn: float
+    edges: Callable[[int, Ends], tuple[float, ...]]
+    passage: Callable[[Ends], Passage]
+
+    def beside(self, tried: Tried, share: float) -> list[Tried]:
+        """Return what is beside a region by a share of the steps between those that are tried first.
+
+        Parameters
+        ----------
+        tried
+            One of them, or one beside.
+        share
+            Up to 1.
+        """
+        more, move = share * tried.kind.step, share * self.width
+        made = [tried._replace(strength=tried.strength + way * more) for way in (-1.0, 1.0)]
+        if tried.ends is None:
+            return made
+        passage, (low, high) = self.passage(tried.ends), tried.ends
+        moved = [(low - move, high), (low + move, high)] if tried.is_part or passage == "stays" else []
+        moved += [(low, high - move), (low, high + move)] if tried.is_part else []
+        for ends in moved:
+            then = self.passage(ends)
+            if ends[0] < ends[1] and (then != "none" if tried.is_part else then == passage):
+                made.append(tried._replace(ends=self.canonical(ends)))
+        return made
+
+    def canonical(self, ends: Ends) -> Ends:
+        """Return a region with its start within the first turn."""
+        back = self.turn * floor(ends[0] / self.turn) if self.turn else 0.0
+        return ends[0] - back, ends[1] - back
+
+
+def _table(ends: Ends | None, kinds: Sequence[Kind], is_part: bool) -> list[Tried]:
+    return [Tried(ends, kind, strength, is_part) for kind in kinds for strength in kind.scale]
+
+
+def cycle(comparison: Comparison, trials: Sequence[int]) -> Axis | None:
+    """Return the field's cycle, None where it turns in none of the trials.
+
+    Parameters
+    ----------
+    comparison
+        The dataset.
+    trials
+        That are looked at, the most of the gap first.
+    """
+    fields = {trial: comparison.dataset.trials[trial].field for trial in trials}
+    frequency = {trial: field.frequency_Hz for trial, field in fields.items() if isinstance(field, RotatingField)}
+    ends_s = {trial: comparison.simulator.nominal(trial).run.duration_s for trial in trials}
+    if not frequency:
+        return None
+
+    def edges(trial: int, ends: Ends) -> tuple[float, ...]:
+        if trial not in frequency:
+            return ()
+        if ends[1] == inf:
+            return (ends[0],)
+        cycles = np.arange(-2.0, np.ceil(frequency[trial] * ends_s[trial]) + 1.0)
+        times = (cycles[:, None] + np.array(ends) / 360.0) / frequency[trial]
+        return tuple(times[(times[:, 1] > 0.0) & (times[:, 0] < ends_s[trial])].ravel().tolist())
+
+    def passage(ends: Ends) -> Passage:
+        return "through" if ends[1] - ends[0] < 360.0 else "none"
+
+    width = 360.0 / _PARTS_OF_CYCLE
+    starts, parts = range(_PARTS_OF_CYCLE), range(1, _PARTS_OF_CYCLE // 2 + 1)
+    regions = [(width * first, width * (first + count)) for first, count in product(starts, parts)]
+    # From a moment on, s.
+    moments = np.linspace(0.0, max(ends_s[trial] for trial in frequency), _MOMENTS + 2)[1:-1]
+    rivals = [None, *((moment, inf) for moment in moments.tolist())]
+    first = [_table(ends, [DRIVE], is_part=False) for ends in rivals]
+    first += [_table(ends, [DRIVE], is_part=True) for ends in regions]
+    return Axis("cycle_phase_deg", "cycle", trials, first, width, 360.0, edges, passage)
+
+
+def along_y(
+    comparison: Comparison, residual: Residual, paths: Sequence[Path | None], trials: Sequence[int]
+) -> Axis | None:
+    """Return the way along y, None where no trial was seen along it.
+
+    Parameters
+    ----------
+    comparison, trials
+        As in `cycle`.
+    residual
+        How wrong the nominal model is, the sensor's nuisances fitted.
+    paths
+        The nominal model's.
+    """
+    seen: dict[int, tuple[Floats, Floats]] = {}
+    for trial in trials:
+        path, observed = paths[trial], comparison.readers[trial].observed
+        y = observed.values.get("y", np.empty(0))
+        if path is None or not y.size:
+            continue
+        # By the model's clock, while it runs.
+        clock = observed.time_s + residual.local[trial, 0] + path.clock_s
+        found = np.isfinite(y) & (clock > 0.0) & (clock < comparison.simulator.nominal(trial).run.duration_s)
+        if np.count_nonzero(found) >= 2:
+            seen[trial] = clock[found], y[found] - residual.local[trial, 2]
+    if not seen:
+        return None
+
+    def inside(trial: int, ends: Ends) -> NDArray[np.bool_]:
+        y = seen[trial][1]
+        return (y >= ends[0]) & (y < ends[1])
+
+    def edges(trial: int, ends: Ends) -> tuple[float, ...]:
+        if trial not in seen:
+            return ()
+        time, there = seen[trial][0], inside(trial, ends)
+        change = np.flatnonzero(np.diff(there))
+        return (*([0.0] if there[0] else []), *(0.5 * (time[change] + time[change + 1])).tolist())
+
+    def passage(ends: Ends) -> Passage:
+        there = inside(most, ends)
+        if there[0] or not there.any():
+            return "none"
+        return "stays" if there[-1] else "through"
+
+    # Of the way of the trial that has most of the gap.
+    most = next(iter(seen))
+    way, kinds = seen[most][1], of_place(comparison.simulator.nominal(most))
+    length = float(np.ptp(np.concatenate(comparison.dataset.robot.body().outline)[:, 1]))
+    count = int(np.clip(np.ceil(np.ptp(way) / (_PART_OF_BODY * length)), 1, _MOST_PARTS))
+    places = np.linspace(np.min(way), np.nextafter(np.max(way), inf), count + 1)
+    first = [_table(None, kinds, is_part=False)]
+    for ends in combinations(places.tolist(), 2):
+        if not inside(most, ends).any():
+            continue
+        first.append(_table(ends, kinds, is_part=passage(ends) != "none"))
+        if passage(ends) == "stays":
+            # It may as well have set in at a moment.
+            first.append(_table(ends, [DRIVE], is_part=False))
+    return Axis("position_y_m", "way", trials, first, float(places[1] - places[0]), 0.0, edges, passage)
