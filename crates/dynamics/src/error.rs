@@ -34,6 +34,8 @@ pub enum Invalid {
     EdgeOrder { row: usize, found: f64, before: f64 },
     #[error("the other trial has another {what}, expected the same")]
     OtherTrial { what: &'static str },
+    #[error("the other trial has a guide or an interlude of its own, expected neither")]
+    NotAlone,
     #[error("the guide has no row, expected at least 1")]
     NoGuide,
     #[error("{name} has {found} entries, expected {expected}")]

@@ -150,7 +150,7 @@ impl Trial {
             return Err(Invalid::OtherTrial { what: "relief" });
         }
         if other.interlude.is_some() || other.guide.is_some() {
-            return Err(Invalid::OtherTrial { what: "interlude or guide" });
+            return Err(Invalid::NotAlone);
         }
         other.field().covers(self.parts.duration)?;
         Ok(Self { interlude: Some(interlude), ..self })

@@ -7,7 +7,7 @@ use nalgebra::UnitQuaternion;
 use tumblers_dynamics::trial::TrialParts;
 use tumblers_dynamics::{Adhesion, Interlude, Invalid, Relief, Robot, SolverKind, State, Stepper, Substrate, Trial};
 
-/// Positions and orientations after every step.
+/// The states after every step.
 fn states(trial: &Trial) -> Vec<State> {
     let mut stepper = Stepper::new(trial, SolverKind::Reduced);
     (0..trial.steps())
@@ -47,7 +47,7 @@ fn without_an_edge_nothing_takes_over_and_from_an_edge_at_the_start_all_is_the_o
     assert_eq!(states(&with(parts, other, &[0.0]).unwrap()), alone[1]);
 }
 
-/// The moment is one of what another trial brings along.
+/// The moment is among what another trial brings along.
 #[test]
 fn a_weaker_moment_takes_over_too() {
     let (parts, _) = both();
@@ -100,7 +100,7 @@ fn an_interlude_that_cannot_be_is_refused() {
     assert_eq!(refused(rough, &[0.1]), Invalid::OtherTrial { what: "relief" });
     let nested = with(other.clone(), other.clone(), &[0.0]).unwrap();
     let twice = Trial::new(parts.clone()).unwrap().with_interlude(Interlude::new(nested, &[0.0]).unwrap());
-    assert_eq!(twice.unwrap_err(), Invalid::OtherTrial { what: "interlude or guide" });
+    assert_eq!(twice.unwrap_err(), Invalid::NotAlone);
     let robot = Robot::new(std::sync::Arc::new(spiked(0.0)), other.robot.mass(), *other.robot.moment()).unwrap();
     assert_eq!(refused(TrialParts { robot, ..other }, &[0.1]), Invalid::OtherTrial { what: "body" });
 }

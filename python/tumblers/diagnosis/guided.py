@@ -9,10 +9,9 @@ y ← y + (1 - e^(-γ (t_k - t_(k-1)))) (ŷ_k - y)      at each frame
 
 loses none where it is seen (Abarbanel and others 2009, SIAM J. Appl. Dyn. Syst. 8, 1341); as γ falls, the objective
 comes back to the one that is asked for. ŷ is what the sensor saw as it was fitted to the run on its own (`Guide`). What
-leaves a gap even where its runs are drawn as fast as that is no relief, and is left.
-Motion that hops leaves the objective rough, so that least squares stop at every hop: it is searched by clouds of points
-whose covariance adapts (CMA-ES; Hansen and Ostermeier 2001, Evol. Comput. 9, 159), in the longer steps as long as runs
-are drawn.
+leaves a gap even where its runs are drawn as fast as at first is no relief, and is left. Motion that hops leaves the
+objective rough, so that least squares stop at every hop: it is searched by clouds of points whose covariance adapts
+(CMA-ES; Hansen and Ostermeier 2001, Evol. Comput. 9, 159), in the longer steps as long as runs are drawn.
 """
 
 from __future__ import annotations
