@@ -94,9 +94,30 @@ def test_what_acts_all_along_acts_in_no_part() -> None:
     assert not parts(slow(get("magnetization_misalignment").from_vector((6.0, 20.0))))
 
 
-@pytest.mark.parametrize("law", [PhaseJump(size=0.2, time_s=0.35, forwards=-1.0), FadingMagnet(size=1.0)])
-def test_what_sets_in_at_a_moment_or_fades_acts_in_no_part(law: Law) -> None:
-    assert not parts(slow(law=law))
+@pytest.mark.parametrize("forwards", [-1.0, 1.0])
+def test_one_trial_tells_the_moment_at_which_the_field_jumps_and_by_how_much(forwards: float) -> None:
+    found = parts(slow(law=PhaseJump(size=0.2, time_s=0.35, forwards=forwards)))
+    told = found.pop("time_s")
+    # Neither of the cycle nor of the way.
+    assert not found
+    assert told.low == pytest.approx(0.35, abs=0.03)
+    assert told.high == pytest.approx(0.9)
+    assert told.what is not None
+    the, field, angle, way = told.what.split()
+    assert (the, field, way) == ("the", "field", "ahead" if forwards > 0.0 else "behind")
+    # 0.2 of 150°.
+    assert float(angle.removesuffix("°")) == pytest.approx(30.0, abs=5.0)
+
+
+def test_what_fades_acts_in_no_part() -> None:
+    assert not parts(slow(law=FadingMagnet(size=1.0)))
+
+
+def test_a_field_that_falls_short_for_good_may_as_well_be_a_place_that_holds_the_robot() -> None:
+    found = parts(slow(law=StickySpot(size=1.0, place_m=(1.2e-3, 2.7e-3))))
+    assert set(found) == {"position_y_m", "time_s"}
+    assert found["time_s"].what is not None
+    assert found["time_s"].what.endswith("times the magnetic torque")
 
 
 def test_what_is_left_before_all_trials_were_run_is_clear_of_the_best() -> None:

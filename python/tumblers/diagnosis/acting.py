@@ -14,8 +14,9 @@ from ..effects.friction_coefficient import FrictionCoefficient
 from ..effects.magnetization_strength import MagnetizationStrength
 from ..scenario import Scenario
 from .quantity import plain
+from .turned_field import TurnedField
 
-__all__ = ["DRIVE", "Kind", "of_place", "words_of"]
+__all__ = ["DRIVE", "TURN", "Kind", "of_place", "words_of"]
 
 
 class Kind(NamedTuple):
@@ -59,8 +60,14 @@ def _drive(strength: float, _: Scenario) -> tuple[Effect, ...]:
     return (MagnetizationStrength(factor=max(1.0 - strength, 0.0)),)
 
 
-# The field drives the robot by less, or by more.
+def _turn(strength: float, _: Scenario) -> tuple[Effect, ...]:
+    # By half a turn more it is behind.
+    return (TurnedField(ahead_deg=180.0 - (180.0 - strength) % 360.0),)
+
+
+# The field drives the robot by less, or by more; and is ahead, degrees.
 DRIVE = Kind(_drive, (-0.25, 0.25, 0.5, 0.75, 1.0))
+TURN = Kind(_turn, (-135.0, -90.0, -45.0, -15.0, 15.0, 45.0, 90.0, 135.0, 180.0))
 # The substrate holds on by a force, is rougher or smoother; and holds on by the area that touches, without and with a
 # force.
 _OF_ANY_PLACE = Kind(_force, (-2.0, -0.5, 1.0, 2.5, 4.0)), Kind(_friction, (-1.0, 1.0, 2.0))
@@ -98,6 +105,8 @@ def _words(effect: Effect) -> str:
             return f"{_times(factor)} the friction"
         case MagnetizationStrength(factor=factor):
             return f"{_times(factor)} the magnetic torque"
+        case TurnedField(ahead_deg=ahead):
+            return f"the field {abs(ahead):.2g}° {'ahead' if ahead > 0.0 else 'behind'}"
         case ElectrostaticForce(added_force_N=force):
             return f"{plain(force, 'N')} more attraction"
     raise AssertionError(effect)

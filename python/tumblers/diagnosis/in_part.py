@@ -1,4 +1,4 @@
-"""Effects that act in a part of the data alone: in a place along the robot's way, or in a part of the field's cycle.
+"""Effects that act in a part of the data alone: in a place along the way, in a part of the cycle, from a moment on.
 
 What no effect explains that acts all along may be what one does that acts in a part S. With C_t what the model leaves
 of trial t (`left_by`), the part is told where
@@ -7,12 +7,13 @@ of trial t (`left_by`), the part is told where
 min C(u 1_S)  <  min(C(0), min C(u 1_R)) - 2ac (4.5 + ln N),      C = Σ_t C_t,      min C(u 1_S) < s C(0)
 ```
 
-R all of the data, a place in which the robot was when its track begins, or the time from a moment on, and S any other;
-what was found to act all along is one of them too. a is how many neighbouring numbers count as one, N how many S, each
-with how many kinds of effects, are tried first, and c the least C over the numbers of the trials where that is more
-than one. That is, what sets in somewhere is three standard deviations clear of what is there all along. A robot that
-does not leave a place before its track ends, or that may not, may as well have met something at a moment: there s is
-less.
+R all of the data, or a place in which the robot was when its track begins, for parts of the cycle also the time from
+which on the field drives it by less, and S any other; what was found to act all along is one of them too. a is how many
+neighbouring numbers count as one, N how many S, each with how many kinds of effects, are tried first, and c the least C
+over the numbers of the trials where that is more than one. That is, what sets in somewhere is three standard deviations
+clear of what is there all along. A robot that does not leave a place before its track ends, or that may not, may as
+well have met something at a moment, from which on the field drives it by less: there s is less, and both are told. A
+field that is ahead from a moment on is like nothing else.
 
 A trial is in a place while the robot was seen there, not while the model is: a model that is right is there then. The
 ends are the means over all S that were tried, each with the u that does best for it, of weights e^(-C/2ac): a robot
@@ -28,10 +29,10 @@ import numpy as np
 
 from ..effects.base import Effect
 from ..progress import OnPhase
-from .acting import words_of
+from .acting import TURN, words_of
 from .comparison import Comparison, Residual
 from .job import Job
-from .part_axis import Ends, Tried, along_y, cycle
+from .part_axis import Ends, Tried, along_y, cycle, from_a_moment
 from .part_runs import Runs
 from .pose import Path
 from .remainder import left_of
@@ -47,7 +48,7 @@ _LEAST_SHARE, _MOST_TRIALS, _MOST_STEPS = 0.03, 4, 40_000
 _FOLLOWED, _MOVES = (36, 24, 12, 8, 4), 2
 # s, of what the robot leaves again and of what it may not. A choice, made with the answers of 40 datasets known.
 _THROUGH, _STAYS = 0.6, 0.2
-# Of a part of the cycle and one of the way the one that leaves more than so many times what the other leaves is not
+# Of a part of the cycle, of the way and of the time one that leaves more than so many times what another leaves is not
 # told: slow trials, which come to each once, hardly part them. A choice.
 _HARDLY_MORE = 2.0
 
@@ -60,9 +61,9 @@ def acts_in_part(
     effects: tuple[Effect, ...] = (),
     on_phase: OnPhase | None = None,
 ) -> tuple[Region, ...]:
-    """Return the part of the cycle, or of the way along y, in which an effect acts; none if nobody can say.
+    """Return the part of the cycle, of the way along y or of the time in which an effect acts; none if nobody can say.
 
-    Where either does, the one is told that leaves less, and the other where it does not leave much more. A part of the
+    Where several do, the one is told that leaves least, and another where it does not leave much more. A part of the
     cycle ends beyond 360° where it goes across the cycle's end.
 
     Parameters
@@ -96,7 +97,8 @@ def acts_in_part(
     nothing = left([paths[i] for i in trials])
     all_along = min(nothing, left(comparison.simulator.run([Job(i, effects) for i in trials])))
     told: list[tuple[float, Region]] = []
-    for axis in (cycle(comparison, trials), along_y(comparison, residual, paths, trials)):
+    axes = cycle(comparison, trials), along_y(comparison, residual, paths, trials), from_a_moment(comparison, trials)
+    for axis in axes:
         if axis is None:
             continue
         expected = sum(len(table) for table in axis.first) + 6 * _MOVES * sum(_FOLLOWED)
@@ -131,10 +133,15 @@ def _best(runs: Runs, nothing: float, all_along: float) -> Tried | None:
         return None
     best = runs.best(whole)
     clear = runs.clear * _wide(runs, best)
-    stays = [runs.known[tried] for tried in parts if runs.axis.passage(_ends(tried)) == "stays"]
+    stays = [runs.known[tried] for tried in parts if _may_be_another(runs, tried)]
     rest = min([all_along, *(cost for tried, cost in runs.known.items() if not tried.is_part)])
     enough = _THROUGH if runs.known[best] < min(stays, default=inf) - clear else _STAYS
     return best if runs.known[best] < min(rest - clear, enough * nothing) else None
+
+
+def _may_be_another(runs: Runs, tried: Tried) -> bool:
+    """Return whether what sets in for good may be much else too; a field that is ahead does what nothing else does."""
+    return runs.axis.passage(_ends(tried)) == "stays" and tried.kind is not TURN
 
 
 def _narrowed(runs: Runs, those: Sequence[Tried]) -> None:

@@ -126,11 +126,11 @@ def localise(
 
 
 def _with_sigmas(cells: Cells, part: Region) -> Region:
-    """Return a part of the cycle or of the way with how far off the numbers in it are."""
+    """Return a part of the cycle, of the way or of the time with how far off the numbers in it are."""
     assert part.low is not None
     assert part.high is not None
-    cycle = part.axis == "cycle_phase_deg"
-    beyond = (cells.phase_deg - part.low) % 360.0 if cycle else cells.y_m - part.low
+    place = {"cycle_phase_deg": cells.phase_deg, "position_y_m": cells.y_m, "time_s": cells.time_s}[part.axis]
+    beyond = (place - part.low) % 360.0 if part.axis == "cycle_phase_deg" else place - part.low
     inside = (beyond >= 0.0) & (beyond <= part.high - part.low)
     return replace(part, sigmas=_rms(cells, inside)) if inside.any() else part
 

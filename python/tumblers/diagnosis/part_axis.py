@@ -1,4 +1,4 @@
-"""`Axis`: what regions are parts of, the cycle of the field or the way along y, and what is tried of them first."""
+"""`Axis`: what regions are parts of, the cycle of the field, the way along y or the time, and what is tried first."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..field import RotatingField
-from .acting import DRIVE, Kind, of_place
+from .acting import DRIVE, TURN, Kind, of_place
 from .comparison import Comparison, Residual
 from .pose import Path
 
-__all__ = ["Axis", "Ends", "Tried", "along_y", "cycle"]
+__all__ = ["Axis", "Ends", "Tried", "along_y", "cycle", "from_a_moment"]
 
 Floats = NDArray[np.float64]
 Ends = tuple[float, float]
@@ -25,8 +25,8 @@ Passage = Literal["through", "stays", "none"]
 
 # Parts of a cycle, of which a region has half at first; of a way so many at most, or this share of the body's length.
 _PARTS_OF_CYCLE, _MOST_PARTS, _PART_OF_BODY = 12, 10, 0.25
-# Moments from which on the field may drive a robot by less.
-_MOMENTS = 10
+# Moments from which on a part of the cycle is held against the field's driving by less, and such that are parts.
+_MOMENTS, _ONSETS = 10, 16
 
 
 class Tried(NamedTuple):
@@ -70,6 +70,8 @@ class Axis:
         Between which times, s, a trial is within a region.
     passage
         How the trial that has most of the gap comes through a region.
+    closes
+        Whether a region has an end before the data's.
     """
 
     name: str
@@ -80,6 +82,7 @@ class Axis:
     turn: float
     edges: Callable[[int, Ends], tuple[float, ...]]
     passage: Callable[[Ends], Passage]
+    closes: bool = True
 
     def beside(self, tried: Tried, share: float) -> list[Tried]:
         """Return what is beside a region by a share of the steps between those that are tried first.
@@ -97,7 +100,7 @@ class Axis:
             return made
         passage, (low, high) = self.passage(tried.ends), tried.ends
         moved = [(low - move, high), (low + move, high)] if tried.is_part or passage == "stays" else []
-        moved += [(low, high - move), (low, high + move)] if tried.is_part else []
+        moved += [(low, high - move), (low, high + move)] if tried.is_part and self.closes else []
         for ends in moved:
             then = self.passage(ends)
             if ends[0] < ends[1] and (then != "none" if tried.is_part else then == passage):
@@ -114,6 +117,11 @@ def _table(ends: Ends | None, kinds: Sequence[Kind], is_part: bool) -> list[Trie
     return [Tried(ends, kind, strength, is_part) for kind in kinds for strength in kind.scale]
 
 
+def _frequencies(comparison: Comparison, trials: Sequence[int]) -> dict[int, float]:
+    fields = {trial: comparison.dataset.trials[trial].field for trial in trials}
+    return {trial: field.frequency_Hz for trial, field in fields.items() if isinstance(field, RotatingField)}
+
+
 def cycle(comparison: Comparison, trials: Sequence[int]) -> Axis | None:
     """Return the field's cycle, None where it turns in none of the trials.
 
@@ -124,8 +132,7 @@ def cycle(comparison: Comparison, trials: Sequence[int]) -> Axis | None:
     trials
         That are looked at, the most of the gap first.
     """
-    fields = {trial: comparison.dataset.trials[trial].field for trial in trials}
-    frequency = {trial: field.frequency_Hz for trial, field in fields.items() if isinstance(field, RotatingField)}
+    frequency = _frequencies(comparison, trials)
     ends_s = {trial: comparison.simulator.nominal(trial).run.duration_s for trial in trials}
     if not frequency:
         return None
@@ -151,6 +158,31 @@ def cycle(comparison: Comparison, trials: Sequence[int]) -> Axis | None:
     first = [_table(ends, [DRIVE], is_part=False) for ends in rivals]
     first += [_table(ends, [DRIVE], is_part=True) for ends in regions]
     return Axis("cycle_phase_deg", "cycle", trials, first, width, 360.0, edges, passage)
+
+
+def from_a_moment(comparison: Comparison, trials: Sequence[int]) -> Axis | None:
+    """Return the time, of which regions go on to the end, None where the field turns in none of the trials.
+
+    Parameters
+    ----------
+    comparison, trials
+        As in `cycle`.
+    """
+    frequency = _frequencies(comparison, trials)
+    if not frequency:
+        return None
+
+    def edges(trial: int, ends: Ends) -> tuple[float, ...]:
+        return (ends[0],) if trial in frequency else ()
+
+    def passage(ends: Ends) -> Passage:
+        return "stays" if 0.0 < ends[0] < last else "none"
+
+    last = max(comparison.dataset.trials[trial].duration_s for trial in frequency)
+    moments = np.linspace(0.0, last, _ONSETS + 2)[1:-1].tolist()
+    first = [_table(None, [DRIVE, TURN], is_part=False)]
+    first += [_table((moment, last), [kind], is_part=True) for moment, kind in product(moments, (DRIVE, TURN))]
+    return Axis("time_s", "run", trials, first, last / (_ONSETS + 1), 0.0, edges, passage, closes=False)
 
 
 def along_y(
@@ -209,7 +241,4 @@ def along_y(
         if not inside(most, ends).any():
             continue
         first.append(_table(ends, kinds, is_part=passage(ends) != "none"))
-        if passage(ends) == "stays":
-            # It may as well have set in at a moment.
-            first.append(_table(ends, [DRIVE], is_part=False))
     return Axis("position_y_m", "way", trials, first, float(places[1] - places[0]), 0.0, edges, passage)
