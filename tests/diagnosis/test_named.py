@@ -154,8 +154,7 @@ def check_pasted(diagnosis: Diagnosis, folder: File) -> None:
         paths.append(
             Path(
                 interval_s=every * floor.step_s,
-                position_m=run[f"{seen}position_m"].values[::every],
-                orientation=run[f"{seen}orientation"].values[::every],
+                poses=np.hstack([run[f"{seen}{name}"].values[::every] for name in ("position_m", "orientation")]),
                 contact_mode=run["contact_mode"].values[::every],
             )
         )

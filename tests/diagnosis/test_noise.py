@@ -35,7 +35,7 @@ def turned_in_the_plane(degrees: float) -> Path:
     """Return the path of a body that lies flat all along, turned by so much."""
     half = 0.5 * np.radians(degrees)
     still = np.tile([np.cos(half), 0.0, 0.0, np.sin(half)], (3, 1))
-    return Path(1.0, np.zeros((3, 3)), still, np.zeros(3, dtype=np.int8))
+    return Path(1.0, np.hstack([np.zeros((3, 3)), still]), np.zeros(3, dtype=np.int8))
 
 
 def with_outcomes() -> Dataset:

@@ -52,8 +52,7 @@ def test_a_path_is_linear_between_its_rows_and_holds_its_ends() -> None:
     orientation = np.stack([turn((1.0, 0.0, 0.0), angle) for angle in (0.0, 10.0, 20.0)])
     path = Path(
         interval_s=0.1,
-        position_m=np.array([[0.0, 0.0, 1.0], [0.0, 2.0, 1.0], [1.0, 2.0, 1.0]]),
-        orientation=orientation,
+        poses=np.hstack([[[0.0, 0.0, 1.0], [0.0, 2.0, 1.0], [1.0, 2.0, 1.0]], orientation]),
         contact_mode=np.array([3, 2, 0], dtype=np.int8),
     )
     position, turned = path.at(np.array([-1.0, 0.05, 0.15, 9.0]))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,10 +22,9 @@ class Path:
     ----------
     interval_s
         Time between rows, s.
-    position_m
-        The tracked point, substrate frame as the camera sees it, m, shape (n, 3).
-    orientation
-        Unit quaternions w, x, y, z, body to substrate, shape (n, 4), of one sign along the path.
+    poses
+        The tracked point, substrate frame as the camera sees it, m, and the unit quaternion w, x, y, z, body to
+        substrate, of one sign along the path, side by side so that a time is looked up once, shape (n, 7).
     contact_mode
         0 airborne, 1 point, 2 line, 3 surface, shape (n,).
     clock_s
@@ -34,10 +32,19 @@ class Path:
     """
 
     interval_s: float
-    position_m: Floats
-    orientation: Floats
+    poses: Floats
     contact_mode: NDArray[np.int8]
     clock_s: float = 0.0
+
+    @property
+    def position_m(self) -> Floats:
+        """The tracked point, m, shape (n, 3)."""
+        return self.poses[:, :3]
+
+    @property
+    def orientation(self) -> Floats:
+        """The unit quaternions, shape (n, 4)."""
+        return self.poses[:, 3:]
 
     def at(self, time_s: Floats) -> tuple[Floats, Floats]:
         """Return positions (k, 3) and unit quaternions (k, 4) at times (k,), the ends held.
@@ -47,17 +54,12 @@ class Path:
         time_s
             Times of the field, s.
         """
-        place = np.clip(time_s / self.interval_s, 0.0, len(self.position_m) - 1.0 - _core.END_ROWS)
+        place = np.clip(time_s / self.interval_s, 0.0, len(self.poses) - 1.0 - _core.END_ROWS)
         row = place.astype(np.intp)
         share = (place - row)[:, None]
         between = self.poses[row] * (1.0 - share) + self.poses[row + 1] * share
         position, turned = between[:, :3], between[:, 3:]
         return position, turned / np.sqrt(np.einsum("ij,ij->i", turned, turned))[:, None]
-
-    @cached_property
-    def poses(self) -> Floats:
-        """Positions and quaternions side by side, so that a time is looked up once, shape (n, 7)."""
-        return np.hstack([self.position_m, self.orientation])
 
     def mode_at(self, time_s: Floats) -> NDArray[np.int8]:
         """Return the contact mode at times of the field (k,), s."""

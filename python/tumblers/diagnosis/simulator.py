@@ -42,7 +42,7 @@ _PIECE_S = 0.1
 # Poses that one run of all trials may have: some dozen runs are in memory at once.
 _MOST_ROWS = 500_000
 # Bytes of paths that are kept: a fit often comes back to a point, and the search to a fit.
-_MOST_KEPT = 256_000_000
+_MOST_KEPT = 512_000_000
 
 Floats = NDArray[np.float64]
 
@@ -340,8 +340,7 @@ class Simulator:
         position = scenario.camera.tracked_position(position, orientation, scenario.robot.center_of_mass_m)
         return Path(
             interval_s=every * scenario.run.fixed_step_s,
-            position_m=position,
-            orientation=orientation,
+            poses=np.hstack([position, orientation]),
             contact_mode=rollout["contact_mode"][:rows],
         )
 
@@ -357,8 +356,7 @@ def _seen(path: Path | None, camera: Camera) -> Path | None:
         return path
     return Path(
         interval_s=path.interval_s,
-        position_m=camera.seen_position(path.position_m),
-        orientation=camera.seen_orientation(path.orientation),
+        poses=np.hstack([camera.seen_position(path.position_m), camera.seen_orientation(path.orientation)]),
         contact_mode=path.contact_mode,
         clock_s=camera.time_offset_s,
     )
@@ -377,8 +375,7 @@ def _lengthened_s(field: object, duration_s: float, time_s: float) -> float:
 
 
 def _size(path: Path | None) -> int:
-    # Beside its columns, a path that is compared has its poses side by side.
-    return 0 if path is None else 2 * (path.position_m.nbytes + path.orientation.nbytes) + path.contact_mode.nbytes
+    return 0 if path is None else path.poses.nbytes + path.contact_mode.nbytes
 
 
 def longest_in(field: object) -> float:
