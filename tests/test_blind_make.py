@@ -25,6 +25,7 @@ from tumblers.blind.layout import draw_lab, world_scenario
 from tumblers.blind.make import make
 from tumblers.blind.records import read_records
 from tumblers.blind.repeat import REPEAT_FORMAT
+from tumblers.blind.repeated import Repeated
 from tumblers.blind.schedule import Task, task
 from tumblers.blind.strength import Strength, strength
 from tumblers.blind.world import Scene, watch
@@ -92,9 +93,11 @@ def test_what_a_repeat_wrote_is_read_again(made: Path, tmp_path: Path) -> None:
     again = {"format": REPEAT_FORMAT, "version": "1", "seconds": 3.5, "threads": 4, "cores": 2, "same": True}
     (folder / "dataset-001" / "repeat.json").write_text(json.dumps(again))
     _, (first, second) = read_records(folder, folder / "answers.json")
-    assert (first.repeated_seconds, first.repeated_cores) == (None, None)
-    assert (second.repeated_seconds, second.repeated_threads, second.repeated_cores) == (3.5, 4, 2)
-    assert second.repeated_same is True
+    assert first.repeated is None
+    # Before, what the processors did was not noted.
+    assert second.repeated == Repeated(seconds=3.5, processor_s=None, threads=4, cores=2, same=True)
+    (folder / "dataset-001" / "repeat.json").write_text(json.dumps({**again, "processor_s": 6.0}))
+    assert read_records(folder, folder / "answers.json")[1][1].repeated == replace(second.repeated, processor_s=6.0)
 
 
 def test_a_seal_does_not_depend_on_the_order_of_keys() -> None:

@@ -73,6 +73,7 @@ def test_the_slowest_are_diagnosed_again_for_the_same_answer(
     again = json.loads((tmp_path / "dataset-001" / "repeat.json").read_text())
     assert (again["same"], again["threads"]) == (False, THREADS)
     assert 1 <= again["cores"] <= (os.cpu_count() or 1)
+    assert again["processor_s"] > 0.0
     # Another diagnosis has not been repeated.
     _diagnose(tmp_path / "dataset-001", THREADS)
     assert not (tmp_path / "dataset-001" / "repeat.json").exists()

@@ -15,6 +15,7 @@ from tumblers.blind.law import EffectLaw
 from tumblers.blind.layout import STEADY_SIGMA
 from tumblers.blind.page import page_of, print_scores
 from tumblers.blind.records import Record, read_records
+from tumblers.blind.repeated import Repeated
 from tumblers.blind.score import Scores, score_records
 from tumblers.blind.share import Share
 from tumblers.blind.ties import difference_sigma, effect_of
@@ -151,14 +152,42 @@ def test_the_page_tells_what_two_causes_show_beside_each_other_where_the_answers
 
 def test_what_was_diagnosed_again_counts_for_time_and_sameness() -> None:
     again = [
-        replace(record(number, answer("none"), said("no_gap", shrink=None)), repeated_seconds=50.0 * (number + 1),
-                repeated_threads=4, repeated_cores=2, repeated_same=number > 0)
-        for number in range(3)
-    ]  # fmt: skip
+        replace(
+            record(number, answer("none"), said("no_gap", shrink=None)),
+            repeated=Repeated(
+                seconds=50.0 * (number + 1), processor_s=processor_s, threads=4, cores=2, same=number > 0
+            ),
+        )
+        for number, processor_s in enumerate((90.0, 110.0, 280.0))
+    ]
     scores = score_records([*again, record(3, answer("none"), said("no_gap", shrink=None))], 7, lambda _: 0.0)
-    assert value(scores, "longest") == 150.0
+    # 100 s on the wall and 110 s of the processors: 90 s on one core. 150 s and 280 s: 20 s, and 260 s on all.
+    assert value(scores, "longest") == pytest.approx(95.0)
     assert value(scores, "diagnosed again") == pytest.approx(2 / 3)
-    assert "on 4 threads (cores: 2): at most 150 s" in page_of(scores)
+    derived = "at most 100 s and 110 s of the processors, which is 95 s on 4 cores by Amdahl's law, not measured there."
+    assert f"on 4 threads (cores: 2): {derived}" in page_of(scores)
+
+
+@pytest.mark.parametrize(
+    ("threads", "cores", "processor_s", "expected"),
+    [
+        # 20 s on one core and 260 s on all.
+        (2, 2, 280.0, 85.0),
+        (8, 2, 280.0, 85.0),
+        (2, None, 280.0, 85.0),
+        # As it was, where it had as many, where nobody can say, and where nothing ran beside anything.
+        (4, 4, 500.0, 150.0),
+        (8, None, 500.0, 150.0),
+        (2, 2, None, 150.0),
+        (1, 4, 140.0, 150.0),
+        (4, 2, 140.0, 150.0),
+    ],
+)
+def test_a_time_on_more_cores_is_that_of_what_runs_on_one_and_of_what_runs_on_all(
+    threads: int, cores: int | None, processor_s: float | None, expected: float
+) -> None:
+    again = Repeated(seconds=150.0, processor_s=processor_s, threads=threads, cores=cores, same=True)
+    assert again.seconds_on(4) == pytest.approx(expected)
 
 
 def test_scores_are_those_computed_by_hand() -> None:

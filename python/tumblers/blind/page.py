@@ -10,7 +10,7 @@ from .draw import CLEAR_SIGMA, LEAST_BESIDE_SIGMA, QUIET_SIGMA, QUIET_TRIAL_SIGM
 from .jitter import DIMENSIONS, NUMBERS
 from .layout import STEADY_SIGMA
 from .overlap import halves
-from .score import TIE_SIGMA, Criterion, Scores
+from .score import CORES, TIE_SIGMA, Criterion, Scores
 from .share import Share
 
 __all__ = ["page_of", "print_scores"]
@@ -152,13 +152,17 @@ def _share(value: float) -> str:
 
 
 def _repeated(scores: Scores) -> str:
-    if scores.repeated_longest is None:
+    again = scores.repeated_longest
+    if again is None:
         return ""
-    cores = "" if scores.repeated_cores is None else f" (cores: {scores.repeated_cores})"
-    return (
-        f" The slowest again, one after another on {scores.repeated_threads} threads{cores}: at most "
-        f"{scores.repeated_longest:.0f} s."
-    )
+    cores = "" if again.cores is None else f" (cores: {again.cores})"
+    said = f" The slowest again, one after another on {again.threads} threads{cores}: at most {again.seconds:.0f} s"
+    if not again.is_measured_on(CORES):
+        said += (
+            f" and {again.processor_s:.0f} s of the processors, which is {again.seconds_on(CORES):.0f} s on {CORES} "
+            "cores by Amdahl's law, not measured there"
+        )
+    return f"{said}."
 
 
 def _clear(scores: Scores) -> str:

@@ -12,6 +12,7 @@ from ..errors import InputError, show
 from .answer import Answer, seal
 from .forms import law_of
 from .make import ANSWERS_FORMAT, SEAL, SEAL_FORMAT
+from .repeated import Repeated
 from .ties import effect_of
 from .written import read_diagnosis, read_repeat, read_run, read_table
 
@@ -35,9 +36,8 @@ class Record:
         The table of ``diagnosis.json``; None where the dataset has none.
     seconds, threads, version
         How long the diagnosis took, on how many threads, and by which version it is.
-    repeated_seconds, repeated_threads, repeated_cores, repeated_same
-        How long it took again with nothing beside it, on how many threads of how many cores, and whether it was the
-        same.
+    repeated
+        The same once more with nothing beside it; None where that was not done.
     """
 
     dataset: str
@@ -46,10 +46,7 @@ class Record:
     seconds: float | None = None
     threads: int = 1
     version: str | None = None
-    repeated_seconds: float | None = None
-    repeated_threads: int | None = None
-    repeated_cores: int | None = None
-    repeated_same: bool | None = None
+    repeated: Repeated | None = None
 
     @property
     def truth(self) -> tuple[str, ...]:
@@ -124,7 +121,7 @@ def _record(folder: Path, salt: object, answer: object, answers: Path) -> Record
         raise InputError(f"{folder.name}.{error.key}", error.found, error.expected, answers) from None
     except (AttributeError, KeyError, OverflowError, TypeError, ValueError):
         raise InputError(folder.name, show(answer), "an answer of this version", answers) from None
-    run, again = read_run(folder) or {}, read_repeat(folder) or {}
+    run = read_run(folder) or {}
     return Record(
         dataset=folder.name,
         answer=truth,
@@ -132,10 +129,19 @@ def _record(folder: Path, salt: object, answer: object, answers: Path) -> Record
         seconds=run.get("seconds"),
         threads=run.get("threads", 1),
         version=run.get("version"),
-        repeated_seconds=again.get("seconds"),
-        repeated_threads=again.get("threads"),
-        repeated_cores=again.get("cores"),
-        repeated_same=again.get("same"),
+        repeated=_repeated(read_repeat(folder)),
+    )
+
+
+def _repeated(table: Mapping[str, Any] | None) -> Repeated | None:
+    if table is None:
+        return None
+    return Repeated(
+        seconds=table["seconds"],
+        processor_s=table.get("processor_s"),
+        threads=table["threads"],
+        cores=table["cores"],
+        same=table["same"],
     )
 
 

@@ -18,10 +18,11 @@ from .jitter import Jitter
 from .law import EffectLaw
 from .overlap import CLEAR, all_trials, halves, overlap, pointed_out, regions
 from .records import Record, read_records
+from .repeated import Repeated
 from .share import Share, share_of, together
 from .ties import difference_sigma, effect_of
 
-__all__ = ["Criterion", "Scores", "TieCheck", "score", "score_records"]
+__all__ = ["CORES", "Criterion", "Scores", "TieCheck", "score", "score_records"]
 
 FORMAT = "tumblers-blind-scores/1"
 STRENGTH_BINS = ((0.0, 1.0), (1.0, 3.0), (3.0, 10.0), (10.0, inf))
@@ -29,7 +30,8 @@ PROBABILITY_BINS = ((0.0, 0.2), (0.2, 0.4), (0.4, 0.6), (0.6, 0.8), (0.8, 1.0))
 # An effect named for another one is a tie where what it says differs from the true world by less than the noise,
 # after the sensor's tolerances and what the lab's numbers may be off have taken what they can of that.
 TIE_SIGMA = 1.0
-_SLOWEST_S = 180.0
+# Of a diagnosis, at most, and on how many cores.
+CORES, _SLOWEST_S = 4, 180.0
 # Whether a cause acts as the catalogue has it.
 _FORMS = {"the catalogue's form": True, "another form": False}
 
@@ -103,9 +105,8 @@ class Scores:
         effects shrink of what the sensor leaves.
     seconds_mean, seconds_longest, threads
         Time of a diagnosis, s, and the most threads that one had.
-    repeated_longest, repeated_threads, repeated_cores
-        How long the longest took of those that were diagnosed again with nothing beside them, and on how many threads
-        of how many cores; None where none was.
+    repeated_longest
+        That of those diagnosed again with nothing beside them that takes longest on `CORES`; None where none was.
     criteria
         What has to hold.
     rows
@@ -132,9 +133,7 @@ class Scores:
     seconds_mean: float | None
     seconds_longest: float | None
     threads: int
-    repeated_longest: float | None
-    repeated_threads: int | None
-    repeated_cores: int | None
+    repeated_longest: Repeated | None
     criteria: tuple[Criterion, ...]
     rows: tuple[Mapping[str, Any], ...]
     drawn: int
@@ -199,9 +198,9 @@ def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores
     by_axis = regions(records)
     shrinks = {form: _shrinks([r for r in clear if r.same_form == same]) for form, same in _FORMS.items()}
     seconds = [r.seconds for r in records if r.seconds is not None]
-    repeated = [r.repeated_seconds for r in records if r.repeated_seconds is not None]
-    longest = next((r for r in records if repeated and r.repeated_seconds == max(repeated)), None)
-    same = [r.repeated_same for r in records if r.repeated_same is not None]
+    repeated = [r.repeated for r in records if r.repeated is not None]
+    longest = max(repeated, key=lambda again: again.seconds_on(CORES), default=None)
+    same = [again.same for again in repeated]
 
     def criterion(words: str, share: Share, low: float, high: float = 1.0) -> Criterion:
         return Criterion(words=words, value=share.share, low=low, high=high, count=share.count)
@@ -232,8 +231,8 @@ def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores
         criterion("where: affected trials overlapped by half or more", halves(overlaps), 0.80),
         criterion("where: regions of other axes overlapped by half or more", together(by_axis.values()), 0.80),
         Criterion(
-            words="longest of the slowest again, alone, s",
-            value=max(repeated) if repeated else None,
+            words=f"longest of the slowest again, alone, on {CORES} cores, s",
+            value=None if longest is None else longest.seconds_on(CORES),
             low=0.0,
             high=_SLOWEST_S,
             count=len(repeated),
@@ -266,9 +265,7 @@ def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores
         seconds_mean=mean(seconds) if seconds else None,
         seconds_longest=max(seconds) if seconds else None,
         threads=max((r.threads for r in records), default=1),
-        repeated_longest=max(repeated) if repeated else None,
-        repeated_threads=None if longest is None else longest.repeated_threads,
-        repeated_cores=None if longest is None else longest.repeated_cores,
+        repeated_longest=longest,
         criteria=criteria,
         rows=tuple(_row(r) for r in records),
         drawn=len(records),

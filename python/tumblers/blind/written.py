@@ -134,6 +134,8 @@ def _repeat(table: dict[str, Any]) -> None:
     number("threads", table["threads"])
     # Not every system says how many cores a process may use.
     _number_or_null("cores", table["cores"])
+    # Diagnoses of before did not note it.
+    _number_or_null("processor_s", table.get("processor_s"))
     if not isinstance(table["same"], bool):
         raise InputError("same", show(table["same"]), "true or false")
 
