@@ -8,19 +8,20 @@ from math import inf
 import numpy as np
 import pytest
 
-from tumblers.blind.law import Law
+from tumblers.blind.law import Law, State
 from tumblers.blind.outside import AmplifierDropout, FadingMagnet, PhaseJump, StickySpot
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.in_part import _best, acts_in_part
 from tumblers.diagnosis.job import Interlude, Job
 from tumblers.diagnosis.localise import localise
-from tumblers.diagnosis.part_axis import along_y, cycle
+from tumblers.diagnosis.part_axis import along_y, cycle, from_a_moment
 from tumblers.diagnosis.part_runs import Runs
 from tumblers.diagnosis.result import Region
 from tumblers.effects import get
 from tumblers.effects.base import Effect
 from tumblers.effects.electrostatic_force import ElectrostaticForce
 from tumblers.presets import drive
+from tumblers.scenario import Scenario
 
 from .lab import measure, plan
 from .test_onset import compared, filmed, shared
@@ -113,11 +114,52 @@ def test_what_fades_acts_in_no_part() -> None:
     assert not parts(slow(law=FadingMagnet(size=1.0)))
 
 
-def test_a_field_that_falls_short_for_good_may_as_well_be_a_place_that_holds_the_robot() -> None:
-    found = parts(slow(law=StickySpot(size=1.0, place_m=(1.2e-3, 2.7e-3))))
-    assert set(found) == {"position_y_m", "time_s"}
-    assert found["time_s"].what is not None
-    assert found["time_s"].what.endswith("times the magnetic torque")
+class FallsShort(Law):
+    """From 0.45 s on the magnet has a fifth of its moment."""
+
+    every = 8
+
+    def piece(self, scenario: Scenario, time_s: float, state: State) -> Scenario:
+        weaker = replace(scenario.robot, magnetization_A_per_m=0.2 * scenario.robot.magnetization_A_per_m)
+        return scenario if time_s < 0.45 else replace(scenario, robot=weaker)
+
+
+def test_one_trial_tells_the_moment_from_which_on_the_field_falls_short() -> None:
+    found = parts(slow(law=FallsShort()))["time_s"]
+    assert found.low == pytest.approx(0.45, abs=0.04)
+    assert found.what is not None
+    factor, _, words = found.what.partition(" ")
+    assert words == "times the magnetic torque"
+    assert float(factor) == pytest.approx(0.2, abs=0.15)
+
+
+def test_what_sets_in_before_half_a_cycle_may_act_all_along() -> None:
+    comparison = slow(get("viscous_drag").from_vector((0.03,)))
+    axis = from_a_moment(comparison, [0])
+    assert axis is not None
+    # At 2 Hz, of 0.9 s.
+    assert [axis.passage((low, 0.9)) for low in (0.1, 0.25, 0.26, 0.9)] == ["none", "none", "stays", "none"]
+    assert {one.is_part for table in axis.first for one in table if one.ends is not None and one.ends[0] <= 0.25} == {
+        False
+    }
+    assert axis.edges(0, (0.4, 0.9)) == (0.4,)
+    # Only where it begins is moved.
+    tried = next(one for table in axis.first for one in table if one.is_part)
+    assert tried.ends is not None
+    assert {one.ends[1] for one in axis.beside(tried, 0.5) if one.ends is not None} == {tried.ends[1]}
+    assert all(low > 0.25 and high == tried.ends[1] for low, high in axis.elsewhere(tried.ends))
+    shorter = slow(get("viscous_drag").from_vector((0.03,)), duration_s=0.24)
+    assert from_a_moment(shorter, [0]) is None
+
+
+def test_either_end_of_a_region_is_tried_all_along_the_axis() -> None:
+    axis = cycle(slow(get("viscous_drag").from_vector((0.03,))), [0])
+    assert axis is not None
+    # By halves of 30°, up to half a cycle.
+    assert axis.elsewhere((30.0, 60.0)) == [
+        *((60.0 - 15.0 * k, 60.0) if k < 5 else (420.0 - 15.0 * k, 420.0) for k in range(1, 13)),
+        *((30.0, 30.0 + 15.0 * k) for k in range(1, 13)),
+    ]
 
 
 def test_what_is_left_before_all_trials_were_run_is_clear_of_the_best() -> None:

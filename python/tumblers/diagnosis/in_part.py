@@ -7,13 +7,13 @@ of trial t (`left_by`), the part is told where
 min C(u 1_S)  <  min(C(0), min C(u 1_R)) - 2ac (4.5 + ln N),      C = Σ_t C_t,      min C(u 1_S) < s C(0)
 ```
 
-R all of the data, or a place in which the robot was when its track begins, for parts of the cycle also the time from
-which on the field drives it by less, and S any other; what was found to act all along is one of them too. a is how many
-neighbouring numbers count as one, N how many S, each with how many kinds of effects, are tried first, and c the least C
-over the numbers of the trials where that is more than one. That is, what sets in somewhere is three standard deviations
-clear of what is there all along. A robot that does not leave a place before its track ends, or that may not, may as
-well have met something at a moment, from which on the field drives it by less: there s is less, and both are told. A
-field that is ahead from a moment on is like nothing else.
+R all of the data, a place in which the robot was when its track begins, or the time from a moment of the first half
+cycle on, for parts of the cycle also that from any moment on, and S any other; what was found to act all along is one
+of them too. a is how many neighbouring numbers count as one, N how many S, each with how many
+kinds of effects, are tried first, and c the least C over the numbers of the trials where that is more than one. That
+is, what sets in somewhere is three standard deviations clear of what is there all along. A robot that does not leave a
+place before its track ends, or that may not, may as well have met something at a moment, from which on the field drives
+it by less: there s is less, and both are told. A field that is ahead from a moment on is like nothing else.
 
 A trial is in a place while the robot was seen there, not while the model is: a model that is right is there then. The
 ends are the means over all S that were tried, each with the u that does best for it, of weights e^(-C/2ac): a robot
@@ -22,7 +22,7 @@ that jumps over a place does not say whether it belongs to S.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import inf
 
 import numpy as np
@@ -43,9 +43,12 @@ __all__ = ["acts_in_part"]
 # Trials that are looked at, the most of the gap first: with this share of it at least, so many at most, of so many
 # steps together, so that all runs of an axis, some two thousand, take some two minutes on a core.
 _LEAST_SHARE, _MOST_TRIALS, _MOST_STEPS = 0.03, 4, 40_000
-# How many regions are followed to where less is left, by half of the first steps, a quarter and so on, so many moves
+# By how many halvings of the first steps how many regions are followed to where less is left, so many moves
 # each: a little more may stop a robot altogether, and what is right by a little is found beside what is wrong.
-_FOLLOWED, _MOVES = (36, 24, 12, 8, 4), 2
+_FOLLOWED, _MOVES = {1: 36, 2: 24, 3: 12, 4: 8, 5: 4}, 2
+# Of the best one either end is tried all along the axis, with so many strengths more and less, by this share of their
+# step, and the best of these are followed so, by these halvings. So often, as long as less is left.
+_STRENGTHS, _FINE, _FOLLOWED_ON, _ROUNDS = 8, 1.0 / 16.0, {3: 12, 4: 8, 5: 4}, 2
 # s, of what the robot leaves again and of what it may not. A choice, made with the answers of 40 datasets known.
 _THROUGH, _STAYS = 0.6, 0.2
 # Of a part of the cycle, of the way and of the time one that leaves more than so many times what another leaves is not
@@ -101,7 +104,9 @@ def acts_in_part(
     for axis in axes:
         if axis is None:
             continue
-        expected = sum(len(table) for table in axis.first) + 6 * _MOVES * sum(_FOLLOWED)
+        followed = sum(_FOLLOWED.values()) + sum(_FOLLOWED_ON.values())
+        stretched = 4 * axis.parts * (2 * _STRENGTHS + 1)
+        expected = sum(len(table) for table in axis.first) + 6 * _MOVES * followed + stretched
         most = min([all_along, *(_HARDLY_MORE * cost for cost, _ in told)])
         runs = Runs(comparison, residual, axis, most, tell, expected)
         best = _best(runs, nothing, all_along)
@@ -125,13 +130,17 @@ def _best(runs: Runs, nothing: float, all_along: float) -> Tried | None:
     """
     runs.cost([tried for table in runs.axis.first for tried in table])
     for is_part in (False, True):
-        _narrowed(runs, [runs.best(table) for table in runs.axis.first if table[0].is_part == is_part])
+        _narrowed(runs, [runs.best(table) for table in runs.axis.first if table[0].is_part == is_part], _FOLLOWED)
+    for _ in range(_ROUNDS):
+        before = _best_part(runs)
+        if before is None:
+            return None
+        _stretched(runs, before)
+        if _best_part(runs) == before:
+            break
     parts = [tried for tried in runs.known if tried.is_part]
-    # What was left before all trials were run is of no use, however little some of them have.
-    whole = [tried for tried in parts if tried in runs.whole]
-    if not whole:
-        return None
-    best = runs.best(whole)
+    best = _best_part(runs)
+    assert best is not None
     clear = runs.clear * _wide(runs, best)
     stays = [runs.known[tried] for tried in parts if _may_be_another(runs, tried)]
     rest = min([all_along, *(cost for tried, cost in runs.known.items() if not tried.is_part)])
@@ -144,9 +153,26 @@ def _may_be_another(runs: Runs, tried: Tried) -> bool:
     return runs.axis.passage(_ends(tried)) == "stays" and tried.kind is not TURN
 
 
-def _narrowed(runs: Runs, those: Sequence[Tried]) -> None:
+def _best_part(runs: Runs) -> Tried | None:
+    # What was left before all trials were run is of no use, however little some of them have.
+    whole = [tried for tried in runs.known if tried.is_part and tried in runs.whole]
+    return runs.best(whole) if whole else None
+
+
+def _stretched(runs: Runs, best: Tried) -> None:
+    """Try either end elsewhere, with a little more or less: a longer region may do as well, but not one in between."""
+    more = [_FINE * best.kind.step * k for k in range(-_STRENGTHS, _STRENGTHS + 1)]
+    tables = [
+        [best._replace(ends=ends, strength=best.strength + change) for change in more]
+        for ends in runs.axis.elsewhere(_ends(best))
+    ]
+    runs.cost([tried for table in tables for tried in table])
+    _narrowed(runs, [runs.best(table) for table in tables], _FOLLOWED_ON)
+
+
+def _narrowed(runs: Runs, those: Sequence[Tried], followed: Mapping[int, int]) -> None:
     """Move the ends and the strengths of fewer and fewer of the best, by less and less."""
-    for halving, count in enumerate(_FOLLOWED, 1):
+    for halving, count in followed.items():
         those = sorted(those, key=runs.known.__getitem__)[:count]
         for _ in range(_MOVES):
             tables = [[tried, *runs.axis.beside(tried, 0.5**halving)] for tried in those]

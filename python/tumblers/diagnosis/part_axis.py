@@ -25,8 +25,9 @@ Passage = Literal["through", "stays", "none"]
 
 # Parts of a cycle, of which a region has half at first; of a way so many at most, or this share of the body's length.
 _PARTS_OF_CYCLE, _MOST_PARTS, _PART_OF_BODY = 12, 10, 0.25
-# Moments from which on a part of the cycle is held against the field's driving by less, and such that are parts.
-_MOMENTS, _ONSETS = 10, 16
+# Moments from which on a part of the cycle is held against the field's driving by less; such that are parts, and such
+# that are too early for it.
+_MOMENTS, _ONSETS, _EARLY = 10, 16, 5
 
 
 class Tried(NamedTuple):
@@ -62,8 +63,8 @@ class Axis:
         That are looked at, the most of the gap first.
     first
         What is tried first, together what differs by kind and strength alone.
-    width
-        Of a part.
+    width, parts
+        Of a part, and how many of them a region has at most.
     turn
         After which it comes again, 0 if never.
     edges
@@ -79,6 +80,7 @@ class Axis:
     trials: Sequence[int]
     first: Sequence[Sequence[Tried]]
     width: float
+    parts: int
     turn: float
     edges: Callable[[int, Ends], tuple[float, ...]]
     passage: Callable[[Ends], Passage]
@@ -106,6 +108,20 @@ class Axis:
             if ends[0] < ends[1] and (then != "none" if tried.is_part else then == passage):
                 made.append(tried._replace(ends=self.canonical(ends)))
         return made
+
+    def elsewhere(self, ends: Ends) -> list[Ends]:
+        """Return the regions of which one end is where it is, by halves of a part.
+
+        Parameters
+        ----------
+        ends
+            Of a region.
+        """
+        low, high = ends
+        lengths = [0.5 * self.width * halves for halves in range(1, 2 * self.parts + 1)]
+        made = [(high - length, high) for length in lengths]
+        made += [(low, low + length) for length in lengths] if self.closes else []
+        return [self.canonical(region) for region in made if self.passage(region) != "none"]
 
     def canonical(self, ends: Ends) -> Ends:
         """Return a region with its start within the first turn."""
@@ -157,11 +173,11 @@ def cycle(comparison: Comparison, trials: Sequence[int]) -> Axis | None:
     rivals = [None, *((moment, inf) for moment in moments.tolist())]
     first = [_table(ends, [DRIVE], is_part=False) for ends in rivals]
     first += [_table(ends, [DRIVE], is_part=True) for ends in regions]
-    return Axis("cycle_phase_deg", "cycle", trials, first, width, 360.0, edges, passage)
+    return Axis("cycle_phase_deg", "cycle", trials, first, width, _PARTS_OF_CYCLE // 2, 360.0, edges, passage)
 
 
 def from_a_moment(comparison: Comparison, trials: Sequence[int]) -> Axis | None:
-    """Return the time, of which regions go on to the end, None where the field turns in none of the trials.
+    """Return the time, of which regions go on to the end; None where the field turns by half a cycle in no trial.
 
     Parameters
     ----------
@@ -169,20 +185,26 @@ def from_a_moment(comparison: Comparison, trials: Sequence[int]) -> Axis | None:
         As in `cycle`.
     """
     frequency = _frequencies(comparison, trials)
-    if not frequency:
+    last = max((comparison.dataset.trials[trial].duration_s for trial in frequency), default=0.0)
+    # Until half a cycle no cause has had its turn: what sets in then may as well act all along.
+    begun = 0.5 / max(frequency.values(), default=1.0)
+    if last <= begun:
         return None
 
     def edges(trial: int, ends: Ends) -> tuple[float, ...]:
         return (ends[0],) if trial in frequency else ()
 
     def passage(ends: Ends) -> Passage:
-        return "stays" if 0.0 < ends[0] < last else "none"
+        return "stays" if begun < ends[0] < last else "none"
 
-    last = max(comparison.dataset.trials[trial].duration_s for trial in frequency)
-    moments = np.linspace(0.0, last, _ONSETS + 2)[1:-1].tolist()
-    first = [_table(None, [DRIVE, TURN], is_part=False)]
-    first += [_table((moment, last), [kind], is_part=True) for moment, kind in product(moments, (DRIVE, TURN))]
-    return Axis("time_s", "run", trials, first, last / (_ONSETS + 1), 0.0, edges, passage, closes=False)
+    early, moments = np.linspace(0.0, begun, _EARLY), np.linspace(begun, last, _ONSETS + 2)[1:-1]
+    first = [
+        _table((moment, last), [kind], is_part)
+        for those, is_part in ((early, False), (moments, True))
+        for moment, kind in product(those.tolist(), (DRIVE, TURN))
+    ]
+    width = (last - begun) / (_ONSETS + 1)
+    return Axis("time_s", "run", trials, first, width, _ONSETS, 0.0, edges, passage, closes=False)
 
 
 def along_y(
@@ -241,4 +263,4 @@ def along_y(
         if not inside(most, ends).any():
             continue
         first.append(_table(ends, kinds, is_part=passage(ends) != "none"))
-    return Axis("position_y_m", "way", trials, first, float(places[1] - places[0]), 0.0, edges, passage)
+    return Axis("position_y_m", "way", trials, first, float(places[1] - places[0]), count, 0.0, edges, passage)
