@@ -10,8 +10,9 @@ import pytest
 
 from tumblers.blind.law import Law, State
 from tumblers.blind.outside import AmplifierDropout, FadingMagnet, PhaseJump, StickySpot
+from tumblers.diagnosis.acting import TURN, words_of
 from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.in_part import _best, acts_in_part
+from tumblers.diagnosis.in_part import _best_part, _search, acts_in_part
 from tumblers.diagnosis.job import Interlude, Job
 from tumblers.diagnosis.localise import localise
 from tumblers.diagnosis.part_axis import along_y, cycle, from_a_moment
@@ -72,7 +73,8 @@ def test_a_robot_that_is_never_seen_to_leave_a_place_tells_where_it_begins() -> 
     # Within half a body: the robot hops farther than that.
     assert found.low == pytest.approx(place[0], abs=4e-4)
     assert found.high is not None
-    assert found.high < place[1]
+    # No farther than it was seen.
+    assert found.high < np.nanmax(y) + 1e-5
 
 
 def test_a_field_that_falls_short_in_a_part_of_the_cycle_drives_less_there() -> None:
@@ -104,8 +106,9 @@ def test_one_trial_tells_the_moment_at_which_the_field_jumps_and_by_how_much(for
     assert told.low == pytest.approx(0.35, abs=0.03)
     assert told.high == pytest.approx(0.9)
     assert told.what is not None
-    the, field, angle, way = told.what.split()
-    assert (the, field, way) == ("the", "field", "ahead" if forwards > 0.0 else "behind")
+    the, field, angle, *way = told.what.split()
+    assert (the, field) == ("the", "field")
+    assert " ".join(way) == f"{'ahead of' if forwards > 0.0 else 'behind'} where it should be"
     # 0.2 of 150°.
     assert float(angle.removesuffix("°")) == pytest.approx(30.0, abs=5.0)
 
@@ -158,7 +161,8 @@ def test_either_end_of_a_region_is_tried_all_along_the_axis() -> None:
     # By halves of 30°, up to half a cycle.
     assert axis.elsewhere((30.0, 60.0)) == [
         *((60.0 - 15.0 * k, 60.0) if k < 5 else (420.0 - 15.0 * k, 420.0) for k in range(1, 13)),
-        *((30.0, 30.0 + 15.0 * k) for k in range(1, 13)),
+        # But itself, which there is already.
+        *((30.0, 30.0 + 15.0 * k) for k in range(1, 13) if k != 2),
     ]
 
 
@@ -182,8 +186,13 @@ def test_what_is_left_before_all_trials_were_run_is_clear_of_the_best() -> None:
     assert np.all(left[~whole] > every.min() + some.clear)
     # Where something else leaves nothing, none is run in all trials, and none is told.
     hopeless = Runs(comparison, residual, axis, 0.0, lambda *_: None, len(tried))
-    assert _best(hopeless, 1e9, 1e9) is None
+    _search(hopeless)
+    assert _best_part(hopeless) is None
     assert not hopeless.whole
+    # But what a part has to leave less than is known.
+    least, rivals = hopeless.least_rival(), [one for one in hopeless.known if not one.is_part]
+    assert hopeless.whole == {hopeless.best(rivals)}
+    assert [least] == each.cost([hopeless.best(rivals)])
 
 
 def test_a_region_of_the_cycle_is_within_the_same_phases_of_eachcycle() -> None:
@@ -225,6 +234,37 @@ def test_a_trial_that_was_not_seen_along_y_tells_no_place() -> None:
     values = {name: seen for name, seen in reader.observed.values.items() if name != "y"}
     comparison.readers = (replace(reader, observed=replace(reader.observed, values=values)),)
     assert along_y(comparison, residual, comparison.nominal_paths, [0]) is None
+
+
+@pytest.mark.parametrize(
+    ("strength", "said"),
+    [
+        (26.2, "the field 26° ahead of where it should be"),
+        (-135.0, "the field 140° behind where it should be"),
+        (180.0, "the field 180° ahead of where it should be"),
+        # By more than half a turn it is behind.
+        (225.0, "the field 140° behind where it should be"),
+        (3.77, "the field 3.8° ahead of where it should be"),
+    ],
+)
+def test_a_field_that_is_ahead_is_said_in_degrees(strength: float, said: str) -> None:
+    comparison = slow(get("viscous_drag").from_vector((0.03,)))
+    assert words_of(TURN.effects(strength, comparison.simulator.nominal(0))) == said
+
+
+def test_the_trial_with_most_of_the_gap_says_when_something_may_set_in() -> None:
+    planned = plan([("f2", drive(0.010, 2.0), 0.0), ("f9", drive(0.010, 9.0), 0.0)], duration_s=0.6)
+    comparison = compared(filmed(planned, PhaseJump(size=0.2, time_s=0.35, forwards=1.0), seed=6))
+    trials = comparison.dataset.trials
+    longer = replace(comparison.dataset, trials=(*trials, replace(trials[1], id="long", duration_s=0.8)))
+    comparison = compared(longer)
+    slow_first, fast_first = from_a_moment(comparison, [0, 1]), from_a_moment(comparison, [1, 0])
+    assert slow_first is not None
+    assert fast_first is not None
+    # Half a cycle at 2 and at 9 Hz.
+    assert [axis.passage((0.2, 0.8)) for axis in (slow_first, fast_first)] == ["none", "stays"]
+    # It goes on in the trial that is not looked at.
+    assert {one.ends[1] for table in slow_first.first for one in table if one.ends is not None} == {0.8}
 
 
 def test_an_interlude_of_a_job_is_at_work_between_its_edges_alone() -> None:

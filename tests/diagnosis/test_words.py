@@ -266,11 +266,13 @@ def test_what_may_act_in_a_part_alone_is_said_as_a_supposition() -> None:
     one_with = (
         "With 0.12 times the magnetic torque at phase of the cycle 308 to 401° alone, 48 % of the gap would be gone"
     )
-    or_with = (
-        "or about as well, with 240 nN more attraction at place y 0.80 to 1.60 mm alone, 41 % of the gap would be gone"
-    )
+    or_with = "or, with 240 nN more attraction at place y 0.80 to 1.60 mm alone, 41 % of the gap would be gone"
     assert one.endswith(f". {one_with}.")
     assert both.endswith(f". {one_with}; {or_with}.")
+    time = Region("time_s", 0.79, low=0.337, high=0.9, what="the field 26° behind where it should be")
+    said = dict(points(made(where=(trial, time))))["where"]
+    # It goes on.
+    assert said.endswith(" With the field 26° behind where it should be from 0.34 s on, 79 % of the gap would be gone.")
     assert "would be gone" not in dict(points(made(where=(trial,))))["where"]
     entries = json.loads(made(where=(trial, cycle)).to_json())["where"]
     assert [entry.get("what") for entry in entries] == [None, cycle.what]

@@ -1,7 +1,7 @@
 //! Interludes: times in which another trial takes over from the one that runs.
 //!
-//! A cause may act in a part of a run alone: in a place, or in a part of the field's cycle. Within an interlude a step is one of
-//! the other trial, with its field, substrate, surroundings, slope, mass and moment; the body's shape, the relief and the state
+//! A cause may act in a part of a run alone: in a place, in a part of the field's cycle, from a moment on. Within an interlude a
+//! step is one of the other trial, with its field, substrate, surroundings, slope, mass and moment; the body's shape, the relief and the state
 //! go on as they are.
 
 use crate::Trial;

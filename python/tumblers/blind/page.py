@@ -152,15 +152,16 @@ def _share(value: float) -> str:
 
 
 def _repeated(scores: Scores) -> str:
-    again = scores.repeated_longest
-    if again is None:
+    if not scores.repeated:
         return ""
-    cores = "" if again.cores is None else f" (cores: {again.cores})"
-    said = f" The slowest again, one after another on {again.threads} threads{cores}: at most {again.seconds:.0f} s"
-    if not again.is_measured_on(CORES):
+    longest = max(scores.repeated, key=lambda again: again.seconds)
+    cores = "" if longest.cores is None else f" (cores: {longest.cores})"
+    said = f" The slowest again, one after another on {longest.threads} threads{cores}: at most {longest.seconds:.0f} s"
+    there = [seconds for again in scores.repeated if (seconds := again.seconds_on(CORES)) is not None]
+    if longest.processor_s is not None and longest.seconds_on(CORES) not in (None, longest.seconds):
         said += (
-            f" and {again.processor_s:.0f} s of the processors, which is {again.seconds_on(CORES):.0f} s on {CORES} "
-            "cores by Amdahl's law, not measured there"
+            f", {longest.processor_s:.0f} s of the processors. On {CORES} cores that is at most {max(there):.0f} s by "
+            "Amdahl's law, if what runs on all of these runs on all of those as well; it was not measured there"
         )
     return f"{said}."
 

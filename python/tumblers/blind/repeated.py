@@ -29,34 +29,26 @@ class Repeated:
     cores: int | None
     same: bool
 
-    def is_measured_on(self, cores: int) -> bool:
-        """Return whether it had so many cores, or no more is known than how long it took.
-
-        Parameters
-        ----------
-        cores
-            At least 1.
-        """
-        return self._used >= cores or self._used == 1 or self.processor_s is None
-
-    def seconds_on(self, cores: int) -> float:
-        """Return how long it takes on so many cores, s, as measured where it had as many.
+    def seconds_on(self, cores: int) -> float | None:
+        """Return how long it takes on so many cores, s; None where nobody can say.
 
         W = S + P/n        C = S + P        W' = S + P/n'
 
         with W on the wall and C of the processors on the n cores that it had, S what runs on one core alone and P what
-        runs on all (Amdahl 1967). What ran beside it makes S more.
+        runs on all (Amdahl 1967). What ran beside it makes S more; that what runs on n runs on n' as well is taken for
+        granted. On n as measured.
 
         Parameters
         ----------
         cores
             n', at least 1.
         """
-        if self.is_measured_on(cores) or self.processor_s is None:
+        if self.cores is None:
+            return None
+        used = min(self.threads, self.cores)
+        if used == cores:
             return self.seconds
-        shared = max(self.processor_s - self.seconds, 0.0) / (1.0 - 1.0 / self._used)
-        return self.seconds - shared * (1.0 / self._used - 1.0 / cores)
-
-    @property
-    def _used(self) -> int:
-        return self.threads if self.cores is None else min(self.threads, self.cores)
+        if used == 1 or self.processor_s is None:
+            return None
+        shared = min(max(self.processor_s - self.seconds, 0.0) / (1.0 - 1.0 / used), used * self.seconds)
+        return self.seconds - shared * (1.0 / used - 1.0 / cores)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, get_args
 
-from ..check import choice, number, sequence, text
+from ..check import choice, number, sequence, text, thread_count
 from ..diagnosis.diagnosis import FORMAT
 from ..diagnosis.result import Verdict
 from ..errors import InputError, show, unreadable
@@ -131,9 +131,10 @@ def _run(table: dict[str, Any]) -> None:
 def _repeat(table: dict[str, Any]) -> None:
     _with_keys("", table, "seconds", "threads", "cores", "same")
     number("seconds", table["seconds"])
-    number("threads", table["threads"])
+    thread_count("threads", table["threads"])
     # Not every system says how many cores a process may use.
-    _number_or_null("cores", table["cores"])
+    if table["cores"] is not None:
+        number("cores", table["cores"], least=1.0)
     # Diagnoses of before did not note it.
     _number_or_null("processor_s", table.get("processor_s"))
     if not isinstance(table["same"], bool):

@@ -106,12 +106,16 @@ def _words(effect: Effect) -> str:
         case MagnetizationStrength(factor=factor):
             return f"{_times(factor)} the magnetic torque"
         case TurnedField(ahead_deg=ahead):
-            return f"the field {abs(ahead):.2g}° {'ahead' if ahead > 0.0 else 'behind'}"
+            return f"the field {_two_digits(abs(ahead))}° {'ahead of' if ahead > 0.0 else 'behind'} where it should be"
         case ElectrostaticForce(added_force_N=force):
             return f"{plain(force, 'N')} more attraction"
     raise AssertionError(effect)
 
 
 def _times(factor: float) -> str:
-    # Two digits, written out.
-    return f"{float(f'{factor:.2g}'):g} times"
+    return f"{_two_digits(factor)} times"
+
+
+def _two_digits(value: float) -> str:
+    # Written out.
+    return f"{float(f'{value:.2g}'):g}"

@@ -8,12 +8,12 @@ min C(u 1_S)  <  min(C(0), min C(u 1_R)) - 2ac (4.5 + ln N),      C = Σ_t C_t, 
 ```
 
 R all of the data, a place in which the robot was when its track begins, or the time from a moment of the first half
-cycle on, for parts of the cycle also that from any moment on, and S any other; what was found to act all along is one
-of them too. a is how many neighbouring numbers count as one, N how many S, each with how many
-kinds of effects, are tried first, and c the least C over the numbers of the trials where that is more than one. That
-is, what sets in somewhere is three standard deviations clear of what is there all along. A robot that does not leave a
-place before its track ends, or that may not, may as well have met something at a moment, from which on the field drives
-it by less: there s is less, and both are told. A field that is ahead from a moment on is like nothing else.
+cycle on, and S any other; what was found to act all along is one of them too. a is how many neighbouring numbers count
+as one, N how many S, each with how many kinds of effects, are tried first, and c the least C over the numbers of the
+trials where that is more than one. That is, what sets in somewhere is three standard deviations clear of what is there
+all along. A robot that does not leave a place before its track ends, or that may not, may as well have met something at
+a moment, from which on the field drives it by less: there s is less. A field that is ahead from a moment on is like
+nothing else. Of the cycle, the way and the time each is told that leaves not much more than another.
 
 A trial is in a place while the robot was seen there, not while the model is: a model that is right is there then. The
 ends are the means over all S that were tried, each with the u that does best for it, of weights e^(-C/2ac): a robot
@@ -66,8 +66,7 @@ def acts_in_part(
 ) -> tuple[Region, ...]:
     """Return the part of the cycle, of the way along y or of the time in which an effect acts; none if nobody can say.
 
-    Where several do, the one is told that leaves least, and another where it does not leave much more. A part of the
-    cycle ends beyond 360° where it goes across the cycle's end.
+    A part of the cycle ends beyond 360° where it goes across the cycle's end.
 
     Parameters
     ----------
@@ -99,53 +98,61 @@ def acts_in_part(
     tell = on_phase or (lambda _phase, _done, _total: None)
     nothing = left([paths[i] for i in trials])
     all_along = min(nothing, left(comparison.simulator.run([Job(i, effects) for i in trials])))
-    told: list[tuple[float, Region]] = []
     axes = cycle(comparison, trials), along_y(comparison, residual, paths, trials), from_a_moment(comparison, trials)
+    searched: list[Runs] = []
+    least = inf
     for axis in axes:
         if axis is None:
             continue
         followed = sum(_FOLLOWED.values()) + sum(_FOLLOWED_ON.values())
         stretched = 4 * axis.parts * (2 * _STRENGTHS + 1)
         expected = sum(len(table) for table in axis.first) + 6 * _MOVES * followed + stretched
-        most = min([all_along, *(_HARDLY_MORE * cost for cost, _ in told)])
-        runs = Runs(comparison, residual, axis, most, tell, expected)
-        best = _best(runs, nothing, all_along)
-        if best is not None:
+        runs = Runs(comparison, residual, axis, min(all_along, _HARDLY_MORE * least), tell, expected)
+        _search(runs)
+        searched.append(runs)
+        least = min([least, *(runs.known[best] for best in [_best_part(runs)] if best is not None)])
+    # Whatever axis it is of.
+    rest = min([all_along, *(runs.least_rival() for runs in searched)])
+    told = []
+    for runs in searched:
+        best = _best_part(runs)
+        if best is not None and runs.known[best] <= _HARDLY_MORE * least and _stands_out(runs, best, nothing, rest):
             share = sum(shares[i] for i in trials) * (1.0 - runs.known[best] / nothing)
             what = words_of(best.kind.effects(best.strength, comparison.simulator.nominal(trials[0])))
-            told.append((runs.known[best], Region(axis.name, share, *_mean_ends(runs, best), what=what)))
-    least = min((cost for cost, _ in told), default=inf)
-    return tuple(region for cost, region in told if cost <= _HARDLY_MORE * least)
+            told.append(Region(runs.axis.name, share, *_mean_ends(runs, best), what=what))
+    return tuple(told)
 
 
-def _best(runs: Runs, nothing: float, all_along: float) -> Tried | None:
-    """Return the effects and the region that leave clearly less than what they have to beat, and enough less.
-
-    Parameters
-    ----------
-    runs
-        Of an axis.
-    nothing, all_along
-        What the nominal model leaves, and the least that is known of what acts all along.
-    """
+def _search(runs: Runs) -> None:
+    """Run what is tried first, and what is beside the best of it, and at other ends of the best."""
     runs.cost([tried for table in runs.axis.first for tried in table])
     for is_part in (False, True):
         _narrowed(runs, [runs.best(table) for table in runs.axis.first if table[0].is_part == is_part], _FOLLOWED)
     for _ in range(_ROUNDS):
         before = _best_part(runs)
         if before is None:
-            return None
+            return
         _stretched(runs, before)
         if _best_part(runs) == before:
-            break
-    parts = [tried for tried in runs.known if tried.is_part]
-    best = _best_part(runs)
-    assert best is not None
+            return
+
+
+def _stands_out(runs: Runs, best: Tried, nothing: float, rest: float) -> bool:
+    """Return whether a part leaves clearly less than the rest, and enough less than nothing.
+
+    Parameters
+    ----------
+    runs
+        Of its axis.
+    best
+        That which leaves least there.
+    nothing, rest
+        What the nominal model leaves, and the least that is known of what is no part.
+    """
     clear = runs.clear * _wide(runs, best)
-    stays = [runs.known[tried] for tried in parts if _may_be_another(runs, tried)]
-    rest = min([all_along, *(cost for tried, cost in runs.known.items() if not tried.is_part)])
+    stays = [cost for tried, cost in runs.known.items() if tried.is_part and _may_be_another(runs, tried)]
     enough = _THROUGH if runs.known[best] < min(stays, default=inf) - clear else _STAYS
-    return best if runs.known[best] < min(rest - clear, enough * nothing) else None
+    return runs.known[best] < min(rest - clear, enough * nothing)
 
 
 def _may_be_another(runs: Runs, tried: Tried) -> bool:

@@ -12,8 +12,9 @@ unless a trial does, and in a trial ν is 1, the floor's variance, which is more
 
 Of time, of place and of the cycle an interval holds most of what is affected. Where the gap sets in at a moment, in a
 place along y or in a part of the cycle that trials share (`onset`), the region is that instead. Where nothing explains
-the gap, and it does not set in at a moment, it is that of the place or the part of the cycle in which an effect acts
-alone (`in_part`), if there is one: what is wrong from somewhere on shows where it began, and less where it ended.
+the gap, and trials share no moment at which it sets in, it is that of the place, the part of the cycle or the time in
+which an effect acts alone (`in_part`), if there is one: what is wrong from somewhere on shows where it began, and less
+where it ended.
 """
 
 from __future__ import annotations

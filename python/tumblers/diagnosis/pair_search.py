@@ -142,6 +142,22 @@ class PairSearch:
                 made = self._settled(self._far(made, new), made)
         return made
 
+    def beside(self, first: Contender, singles: Sequence[Contender], known: Sequence[Contender]) -> list[Contender]:
+        """Return known pairs and those with one first that are better, the likeliest first.
+
+        Parameters
+        ----------
+        first
+            One effect, where it was not before.
+        singles
+            Effects by themselves, the likeliest first.
+        known
+            Pairs that were found before.
+        """
+        pairs = self._pairs(known)
+        self._add(pairs, [first], singles)
+        return self._settled(pairs.likeliest_first(), known)
+
     def is_named(self, pair: Contender, single: Contender) -> bool:
         """Return whether a pair would be named beside one effect; else, where that leaves no gap, it is no answer.
 

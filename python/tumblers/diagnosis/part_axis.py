@@ -25,9 +25,8 @@ Passage = Literal["through", "stays", "none"]
 
 # Parts of a cycle, of which a region has half at first; of a way so many at most, or this share of the body's length.
 _PARTS_OF_CYCLE, _MOST_PARTS, _PART_OF_BODY = 12, 10, 0.25
-# Moments from which on a part of the cycle is held against the field's driving by less; such that are parts, and such
-# that are too early for it.
-_MOMENTS, _ONSETS, _EARLY = 10, 16, 5
+# Moments from which on something acts, and such that are too early for that.
+_ONSETS, _EARLY = 16, 5
 
 
 class Tried(NamedTuple):
@@ -65,12 +64,14 @@ class Axis:
         What is tried first, together what differs by kind and strength alone.
     width, parts
         Of a part, and how many of them a region has at most.
+    whole
+        From where to where a region may reach at most: no farther than there are data.
     turn
         After which it comes again, 0 if never.
     edges
         Between which times, s, a trial is within a region.
     passage
-        How the trial that has most of the gap comes through a region.
+        How a trial comes through a region, along the way the one that has most of the gap.
     closes
         Whether a region has an end before the data's.
     """
@@ -81,6 +82,7 @@ class Axis:
     first: Sequence[Sequence[Tried]]
     width: float
     parts: int
+    whole: Ends
     turn: float
     edges: Callable[[int, Ends], tuple[float, ...]]
     passage: Callable[[Ends], Passage]
@@ -103,10 +105,10 @@ class Axis:
         passage, (low, high) = self.passage(tried.ends), tried.ends
         moved = [(low - move, high), (low + move, high)] if tried.is_part or passage == "stays" else []
         moved += [(low, high - move), (low, high + move)] if tried.is_part and self.closes else []
-        for ends in moved:
+        for ends in map(self.canonical, moved):
             then = self.passage(ends)
             if ends[0] < ends[1] and (then != "none" if tried.is_part else then == passage):
-                made.append(tried._replace(ends=self.canonical(ends)))
+                made.append(tried._replace(ends=ends))
         return made
 
     def elsewhere(self, ends: Ends) -> list[Ends]:
@@ -121,12 +123,13 @@ class Axis:
         lengths = [0.5 * self.width * halves for halves in range(1, 2 * self.parts + 1)]
         made = [(high - length, high) for length in lengths]
         made += [(low, low + length) for length in lengths] if self.closes else []
-        return [self.canonical(region) for region in made if self.passage(region) != "none"]
+        # Beyond the data all are alike.
+        return [ends for ends in dict.fromkeys(map(self.canonical, made)) if self.passage(ends) != "none"]
 
     def canonical(self, ends: Ends) -> Ends:
-        """Return a region with its start within the first turn."""
+        """Return a region within the data, with its start within the first turn."""
         back = self.turn * floor(ends[0] / self.turn) if self.turn else 0.0
-        return ends[0] - back, ends[1] - back
+        return max(ends[0] - back, self.whole[0]), min(ends[1] - back, self.whole[1])
 
 
 def _table(ends: Ends | None, kinds: Sequence[Kind], is_part: bool) -> list[Tried]:
@@ -156,8 +159,6 @@ def cycle(comparison: Comparison, trials: Sequence[int]) -> Axis | None:
     def edges(trial: int, ends: Ends) -> tuple[float, ...]:
         if trial not in frequency:
             return ()
-        if ends[1] == inf:
-            return (ends[0],)
         cycles = np.arange(-2.0, np.ceil(frequency[trial] * ends_s[trial]) + 1.0)
         times = (cycles[:, None] + np.array(ends) / 360.0) / frequency[trial]
         return tuple(times[(times[:, 1] > 0.0) & (times[:, 0] < ends_s[trial])].ravel().tolist())
@@ -166,14 +167,12 @@ def cycle(comparison: Comparison, trials: Sequence[int]) -> Axis | None:
         return "through" if ends[1] - ends[0] < 360.0 else "none"
 
     width = 360.0 / _PARTS_OF_CYCLE
-    starts, parts = range(_PARTS_OF_CYCLE), range(1, _PARTS_OF_CYCLE // 2 + 1)
-    regions = [(width * first, width * (first + count)) for first, count in product(starts, parts)]
-    # From a moment on, s.
-    moments = np.linspace(0.0, max(ends_s[trial] for trial in frequency), _MOMENTS + 2)[1:-1]
-    rivals = [None, *((moment, inf) for moment in moments.tolist())]
-    first = [_table(ends, [DRIVE], is_part=False) for ends in rivals]
+    most = _PARTS_OF_CYCLE // 2
+    starts, counts = range(_PARTS_OF_CYCLE), range(1, most + 1)
+    regions = [(width * first, width * (first + count)) for first, count in product(starts, counts)]
+    first = [_table(None, [DRIVE], is_part=False)]
     first += [_table(ends, [DRIVE], is_part=True) for ends in regions]
-    return Axis("cycle_phase_deg", "cycle", trials, first, width, _PARTS_OF_CYCLE // 2, 360.0, edges, passage)
+    return Axis("cycle_phase_deg", "cycle", trials, first, width, most, (-inf, inf), 360.0, edges, passage)
 
 
 def from_a_moment(comparison: Comparison, trials: Sequence[int]) -> Axis | None:
@@ -184,27 +183,32 @@ def from_a_moment(comparison: Comparison, trials: Sequence[int]) -> Axis | None:
     comparison, trials
         As in `cycle`.
     """
-    frequency = _frequencies(comparison, trials)
-    last = max((comparison.dataset.trials[trial].duration_s for trial in frequency), default=0.0)
-    # Until half a cycle no cause has had its turn: what sets in then may as well act all along.
-    begun = 0.5 / max(frequency.values(), default=1.0)
-    if last <= begun:
+    frequency, lab = _frequencies(comparison, trials), comparison.dataset.trials
+    if not frequency:
         return None
+    # Until half a cycle of the trial that has most of the gap no cause has had its turn there: what sets in then may as
+    # well act all along.
+    begun = 0.5 / next(iter(frequency.values()))
+    longest = max(lab[trial].duration_s for trial in frequency)
+    if longest <= begun:
+        return None
+    # It goes on in those that are not looked at.
+    last = max(lab[trial].duration_s for trial in _frequencies(comparison, range(len(lab))))
 
     def edges(trial: int, ends: Ends) -> tuple[float, ...]:
         return (ends[0],) if trial in frequency else ()
 
     def passage(ends: Ends) -> Passage:
-        return "stays" if begun < ends[0] < last else "none"
+        return "stays" if begun < ends[0] < longest else "none"
 
-    early, moments = np.linspace(0.0, begun, _EARLY), np.linspace(begun, last, _ONSETS + 2)[1:-1]
+    early, moments = np.linspace(0.0, begun, _EARLY), np.linspace(begun, longest, _ONSETS + 2)[1:-1]
     first = [
         _table((moment, last), [kind], is_part)
         for those, is_part in ((early, False), (moments, True))
         for moment, kind in product(those.tolist(), (DRIVE, TURN))
     ]
-    width = (last - begun) / (_ONSETS + 1)
-    return Axis("time_s", "run", trials, first, width, _ONSETS, 0.0, edges, passage, closes=False)
+    width, whole = (longest - begun) / (_ONSETS + 1), (0.0, last)
+    return Axis("time_s", "run", trials, first, width, _ONSETS, whole, 0.0, edges, passage, closes=False)
 
 
 def along_y(
@@ -263,4 +267,6 @@ def along_y(
         if not inside(most, ends).any():
             continue
         first.append(_table(ends, kinds, is_part=passage(ends) != "none"))
-    return Axis("position_y_m", "way", trials, first, float(places[1] - places[0]), count, 0.0, edges, passage)
+    every = np.concatenate([y for _, y in seen.values()])
+    whole = float(np.min(every)), float(np.nextafter(np.max(every), inf))
+    return Axis("position_y_m", "way", trials, first, float(places[1] - places[0]), count, whole, 0.0, edges, passage)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import log
+from math import inf, log
 
 import numpy as np
 
@@ -78,18 +78,27 @@ class Runs:
         for first in range(0, len(new), self._at_once):
             self._tell(phase, min(len(self.known), self._expected), self._expected)
             # What leaves more of some trials than another of all is left there: none leaves less than nothing.
-            left = dict.fromkeys(new[first : first + self._at_once], 0.0)
-            most = self._most + self.clear * max(1.0, self._most / self.numbers)
-            some = list(left)
-            for trial in self.axis.trials:
-                some = [tried for tried in some if left[tried] <= most]
-                paths = self.comparison.simulator.run([self._job(trial, tried) for tried in some])
-                for tried, path in zip(some, paths, strict=True):
-                    left[tried] += left_of(self.comparison, self.residual, trial, path)
-            self.known |= left
-            self.whole.update(some)
-            self._most = min([self._most, *(left[tried] for tried in some)])
+            self._run(new[first : first + self._at_once], self._most + self.clear * max(1.0, self._most / self.numbers))
         return [self.known[tried] for tried in those]
+
+    def least_rival(self) -> float:
+        """Return the least C of what is no part, all trials run of those that it takes."""
+        rivals = [tried for tried in self.known if not tried.is_part]
+        while rivals and (best := self.best(rivals)) not in self.whole:
+            self._run([best], inf)
+            self.whole.add(best)
+        return min((self.known[tried] for tried in rivals), default=inf)
+
+    def _run(self, those: Sequence[Tried], most: float) -> None:
+        left, some = dict.fromkeys(those, 0.0), list(those)
+        for trial in self.axis.trials:
+            some = [tried for tried in some if left[tried] <= most]
+            paths = self.comparison.simulator.run([self._job(trial, tried) for tried in some])
+            for tried, path in zip(some, paths, strict=True):
+                left[tried] += left_of(self.comparison, self.residual, trial, path)
+        self.known |= left
+        self.whole.update(some)
+        self._most = min([self._most, *(left[tried] for tried in some)])
 
     def best(self, those: Sequence[Tried]) -> Tried:
         """Return that which leaves least, of what was run."""

@@ -30,7 +30,7 @@ def where_part(diagnosis: Diagnosis) -> str:
     for region in diagnosis.where:
         axis, extent = region_words(region)
         above = sigmas(region.sigmas) if region.sigmas is not None else ""
-        there = "" if region.what is None else f", as if {region.what} there alone (not held against trials left out)"
+        there = "" if region.what is None else f", as with {region.what} there alone (not held against trials left out)"
         rows.append(
             [escape(axis), escape(extent + there), bar(region.share_of_gap, percent(region.share_of_gap)), above]
         )

@@ -179,10 +179,14 @@ class Search:
             near, singles = singles, far
             more = self.clear if near[0].names != far[0].names else max(self.clear, _FARTHER * far[0].cost)
             untried = near[0].total > worth
-            # What is likelier with another beside it than by itself so far away has been a first of pairs.
-            paired = pairs and far[0].names[0] in pairs[0].names and pairs[0].total < far[0].total
-            if far[0].total <= worth and not paired and (untried or near[0].total - far[0].total > more):
-                pairs = self.pairing.found(singles, strong=True, known=pairs)
+            if far[0].total <= worth and (untried or near[0].total - far[0].total > more):
+                # Of what is in the best pair, and less likely by itself even so far away, much has been tried.
+                paired = pairs and far[0].names[0] in pairs[0].names and pairs[0].total < far[0].total
+                pairs = (
+                    self.pairing.beside(far[0], singles, pairs)
+                    if paired
+                    else self.pairing.found(singles, strong=True, known=pairs)
+                )
         elif not (pairs and pairs[0].total < singles[0].total - self.worth):
             singles = settled(self.fitter, self._elsewhere(singles, searched), self.tell)
         made = self._with_shaken_pair(singles, pairs) if singles[0].total <= worth else [*singles, *pairs]

@@ -319,15 +319,15 @@ def _where(diagnosis: Diagnosis) -> str:
 
 
 def _in_parts(diagnosis: Diagnosis) -> str:
-    """Return in which part of the data alone something may act, and what."""
+    """Return in which parts of the data alone something may act, and what: one of them, not all."""
     parts = []
     for region in diagnosis.where:
         if region.what is not None:
             axis, extent = region_words(region)
-            parts.append(
-                f"{region.what} at {axis} {extent} alone, {percent(region.share_of_gap)} of the gap would be gone"
-            )
-    return f" With {'; or about as well, with '.join(parts)}." if parts else ""
+            # What sets in at a moment goes on to the end.
+            there = f"from {extent.split(' ')[0]} s on" if region.axis == "time_s" else f"at {axis} {extent} alone"
+            parts.append(f"{region.what} {there}, {percent(region.share_of_gap)} of the gap would be gone")
+    return f" With {'; or, with '.join(parts)}." if parts else ""
 
 
 def _missing(diagnosis: Diagnosis) -> Iterator[str]:
