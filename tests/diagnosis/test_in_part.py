@@ -10,7 +10,7 @@ import pytest
 
 from tumblers.blind.law import Law, State
 from tumblers.blind.outside import AmplifierDropout, FadingMagnet, PhaseJump, StickySpot
-from tumblers.diagnosis.acting import TURN, words_of
+from tumblers.diagnosis.acting import DRIVE, TURN, words_of
 from tumblers.diagnosis.comparison import Comparison
 from tumblers.diagnosis.in_part import _best_part, _search, acts_in_part
 from tumblers.diagnosis.job import Interlude, Job
@@ -136,13 +136,13 @@ def test_one_trial_tells_the_moment_from_which_on_the_field_falls_short() -> Non
     assert float(factor) == pytest.approx(0.2, abs=0.15)
 
 
-def test_what_sets_in_before_half_a_cycle_may_act_all_along() -> None:
+def test_what_sets_in_before_a_quarter_of_a_cycle_may_act_all_along() -> None:
     comparison = slow(get("viscous_drag").from_vector((0.03,)))
-    axis = from_a_moment(comparison, [0])
+    axis = from_a_moment(comparison, [0], TURN)
     assert axis is not None
     # At 2 Hz, of 0.9 s.
-    assert [axis.passage((low, 0.9)) for low in (0.1, 0.25, 0.26, 0.9)] == ["none", "none", "stays", "none"]
-    assert {one.is_part for table in axis.first for one in table if one.ends is not None and one.ends[0] <= 0.25} == {
+    assert [axis.passage((low, 0.9)) for low in (0.1, 0.125, 0.13, 0.9)] == ["none", "none", "stays", "none"]
+    assert {one.is_part for table in axis.first for one in table if one.ends is not None and one.ends[0] <= 0.125} == {
         False
     }
     assert axis.edges(0, (0.4, 0.9)) == (0.4,)
@@ -150,9 +150,14 @@ def test_what_sets_in_before_half_a_cycle_may_act_all_along() -> None:
     tried = next(one for table in axis.first for one in table if one.is_part)
     assert tried.ends is not None
     assert {one.ends[1] for one in axis.beside(tried, 0.5) if one.ends is not None} == {tried.ends[1]}
-    assert all(low > 0.25 and high == tried.ends[1] for low, high in axis.elsewhere(tried.ends))
-    shorter = slow(get("viscous_drag").from_vector((0.03,)), duration_s=0.24)
-    assert from_a_moment(shorter, [0]) is None
+    assert all(low > 0.125 and high == tried.ends[1] for low, high in axis.elsewhere(tried.ends))
+    shorter = slow(get("viscous_drag").from_vector((0.03,)), duration_s=0.12)
+    assert from_a_moment(shorter, [0], TURN) is None
+    # A field that falls short so early has driven the robot until then.
+    other = from_a_moment(comparison, [0], DRIVE)
+    assert other is not None
+    assert [other.passage((low, 0.9)) for low in (0.0, 0.01, 0.9)] == ["none", "stays", "none"]
+    assert {one.ends for table in other.first for one in table if not one.is_part} == {(0.0, 0.9)}
 
 
 def test_either_end_of_a_region_is_tried_all_along_the_axis() -> None:
@@ -255,14 +260,14 @@ def test_a_field_that_is_ahead_is_said_in_degrees(strength: float, said: str) ->
 def test_the_trial_with_most_of_the_gap_says_when_something_may_set_in() -> None:
     planned = plan([("f2", drive(0.010, 2.0), 0.0), ("f9", drive(0.010, 9.0), 0.0)], duration_s=0.6)
     comparison = compared(filmed(planned, PhaseJump(size=0.2, time_s=0.35, forwards=1.0), seed=6))
-    trials = comparison.dataset.trials
-    longer = replace(comparison.dataset, trials=(*trials, replace(trials[1], id="long", duration_s=0.8)))
+    both = comparison.dataset.trials
+    longer = replace(comparison.dataset, trials=(*both, replace(both[1], id="long", duration_s=0.8)))
     comparison = compared(longer)
-    slow_first, fast_first = from_a_moment(comparison, [0, 1]), from_a_moment(comparison, [1, 0])
+    slow_first, fast_first = (from_a_moment(comparison, trials, TURN) for trials in ([0, 1], [1, 0]))
     assert slow_first is not None
     assert fast_first is not None
-    # Half a cycle at 2 and at 9 Hz.
-    assert [axis.passage((0.2, 0.8)) for axis in (slow_first, fast_first)] == ["none", "stays"]
+    # A quarter of a cycle at 2 and at 9 Hz.
+    assert [axis.passage((0.1, 0.8)) for axis in (slow_first, fast_first)] == ["none", "stays"]
     # It goes on in the trial that is not looked at.
     assert {one.ends[1] for table in slow_first.first for one in table if one.ends is not None} == {0.8}
 

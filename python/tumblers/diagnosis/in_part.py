@@ -7,13 +7,14 @@ of trial t (`left_by`), the part is told where
 min C(u 1_S)  <  min(C(0), min C(u 1_R)) - 2ac (4.5 + ln N),      C = Σ_t C_t,      min C(u 1_S) < s C(0)
 ```
 
-R all of the data, a place in which the robot was when its track begins, or the time from a moment of the first half
-cycle on, and S any other; what was found to act all along is one of them too. a is how many neighbouring numbers count
-as one, N how many S, each with how many kinds of effects, are tried first, and c the least C over the numbers of the
-trials where that is more than one. That is, what sets in somewhere is three standard deviations clear of what is there
-all along. A robot that does not leave a place before its track ends, or that may not, may as well have met something at
-a moment, from which on the field drives it by less: there s is less. A field that is ahead from a moment on is like
-nothing else. Of the cycle, the way and the time each is told that leaves not much more than another.
+R all of the data, a place in which the robot was when its track begins, or for a field that is ahead the time from a
+moment of the first quarter cycle on, and S any other; what was found to act all along is one of them too. a is how many
+neighbouring numbers count as one, N how many S, each with how many kinds of effects, are tried first, and c the least C
+over the numbers of the trials where that is more than one. That is, what sets in somewhere is three standard deviations
+clear of what is there all along. A robot that does not leave a place before its track ends, or that may not, may as
+well have met something at a moment, from which on the field drives it by less: there s is less. A field that is ahead
+from a moment on is like nothing else. Of the cycle, the way and the time each is told that leaves not much more than
+another.
 
 A trial is in a place while the robot was seen there, not while the model is: a model that is right is there then. The
 ends are the means over all S that were tried, each with the u that does best for it, of weights e^(-C/2ac): a robot
@@ -29,7 +30,7 @@ import numpy as np
 
 from ..effects.base import Effect
 from ..progress import OnPhase
-from .acting import TURN, words_of
+from .acting import DRIVE, TURN, words_of
 from .comparison import Comparison, Residual
 from .job import Job
 from .part_axis import Ends, Tried, along_y, cycle, from_a_moment
@@ -98,7 +99,8 @@ def acts_in_part(
     tell = on_phase or (lambda _phase, _done, _total: None)
     nothing = left([paths[i] for i in trials])
     all_along = min(nothing, left(comparison.simulator.run([Job(i, effects) for i in trials])))
-    axes = cycle(comparison, trials), along_y(comparison, residual, paths, trials), from_a_moment(comparison, trials)
+    axes = [cycle(comparison, trials), along_y(comparison, residual, paths, trials)]
+    axes += [from_a_moment(comparison, trials, kind) for kind in (DRIVE, TURN)]
     searched: list[Runs] = []
     least = inf
     for axis in axes:
@@ -110,17 +112,18 @@ def acts_in_part(
         runs = Runs(comparison, residual, axis, min(all_along, _HARDLY_MORE * least), tell, expected)
         _search(runs)
         searched.append(runs)
-        least = min([least, *(runs.known[best] for best in [_best_part(runs)] if best is not None)])
+        least = min(least, _least_part(runs))
     # Whatever axis it is of.
     rest = min([all_along, *(runs.least_rival() for runs in searched)])
-    told = []
-    for runs in searched:
+    told: dict[str, Region] = {}
+    # Of two of one axis the one that leaves less.
+    for runs in sorted(searched, key=lambda runs: -_least_part(runs)):
         best = _best_part(runs)
         if best is not None and runs.known[best] <= _HARDLY_MORE * least and _stands_out(runs, best, nothing, rest):
             share = sum(shares[i] for i in trials) * (1.0 - runs.known[best] / nothing)
             what = words_of(best.kind.effects(best.strength, comparison.simulator.nominal(trials[0])))
-            told.append(Region(runs.axis.name, share, *_mean_ends(runs, best), what=what))
-    return tuple(told)
+            told[runs.axis.name] = Region(runs.axis.name, share, *_mean_ends(runs, best), what=what)
+    return tuple(told.values())
 
 
 def _search(runs: Runs) -> None:
@@ -164,6 +167,11 @@ def _best_part(runs: Runs) -> Tried | None:
     # What was left before all trials were run is of no use, however little some of them have.
     whole = [tried for tried in runs.known if tried.is_part and tried in runs.whole]
     return runs.best(whole) if whole else None
+
+
+def _least_part(runs: Runs) -> float:
+    best = _best_part(runs)
+    return inf if best is None else runs.known[best]
 
 
 def _stretched(runs: Runs, best: Tried) -> None:

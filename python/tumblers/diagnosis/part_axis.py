@@ -175,20 +175,22 @@ def cycle(comparison: Comparison, trials: Sequence[int]) -> Axis | None:
     return Axis("cycle_phase_deg", "cycle", trials, first, width, most, (-inf, inf), 360.0, edges, passage)
 
 
-def from_a_moment(comparison: Comparison, trials: Sequence[int]) -> Axis | None:
-    """Return the time, of which regions go on to the end; None where the field turns by half a cycle in no trial.
+def from_a_moment(comparison: Comparison, trials: Sequence[int], kind: Kind) -> Axis | None:
+    """Return the time, of which regions go on to the end, None where the field turns in none of the trials.
 
     Parameters
     ----------
     comparison, trials
         As in `cycle`.
+    kind
+        What the field does from a moment on.
     """
     frequency, lab = _frequencies(comparison, trials), comparison.dataset.trials
     if not frequency:
         return None
-    # Until half a cycle of the trial that has most of the gap no cause has had its turn there: what sets in then may as
-    # well act all along.
-    begun = 0.5 / next(iter(frequency.values()))
+    # Until a quarter of a cycle of the trial that has most of the gap a robot that lay is not yet over: a field that is
+    # ahead from then on may as well be so all along.
+    begun = 0.25 / next(iter(frequency.values())) if kind is TURN else 0.0
     longest = max(lab[trial].duration_s for trial in frequency)
     if longest <= begun:
         return None
@@ -202,11 +204,8 @@ def from_a_moment(comparison: Comparison, trials: Sequence[int]) -> Axis | None:
         return "stays" if begun < ends[0] < longest else "none"
 
     early, moments = np.linspace(0.0, begun, _EARLY), np.linspace(begun, longest, _ONSETS + 2)[1:-1]
-    first = [
-        _table((moment, last), [kind], is_part)
-        for those, is_part in ((early, False), (moments, True))
-        for moment, kind in product(those.tolist(), (DRIVE, TURN))
-    ]
+    first = [_table((moment, last), [kind], is_part=False) for moment in dict.fromkeys(early.tolist())]
+    first += [_table((moment, last), [kind], is_part=True) for moment in moments.tolist()]
     width, whole = (longest - begun) / (_ONSETS + 1), (0.0, last)
     return Axis("time_s", "run", trials, first, width, _ONSETS, whole, 0.0, edges, passage, closes=False)
 
