@@ -227,7 +227,8 @@ def test_what_runs_away_backwards_on_the_level_does_not_slide(dataset: Dataset, 
         assert path is not None
         position = np.zeros_like(path.position_m)
         position[:, 1] = np.linspace(0.0, way_m, len(position))
-        foretold = foretell(dataset, tie.simulator, option, [[(1, replace(path, position_m=position))]])
+        other = replace(path, poses=np.hstack([position, path.orientation]))
+        foretold = foretell(dataset, tie.simulator, option, [[(1, other)]])
         assert foretold is not None
         return set(foretold.said[0].events.tolist())
 

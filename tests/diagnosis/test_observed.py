@@ -87,7 +87,7 @@ def test_of_a_model_that_slides_counts_what_a_late_camera_sees_of_it() -> None:
     position_m[:, 1] = -np.interp(slid.interval_s * np.arange(len(position_m)), np.linspace(0.0, 0.2, 11), way_m)
     shares = []
     for late_s in (0.0, 0.1, 0.2):
-        path = replace(slid, position_m=position_m, clock_s=late_s)
+        path = replace(slid, poses=np.hstack([position_m, slid.orientation]), clock_s=late_s)
         shares.append(reader.outcome_terms(path, np.zeros(2))["slides"])
     fitting = [reached(share, True, border=0.3) for share in (1.0 / 3.0, 1.0 / 6.0, 0.0)]
     assert_allclose(shares, fitting, rtol=1e-6)
