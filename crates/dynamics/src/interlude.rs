@@ -1,8 +1,8 @@
 //! Interludes: times in which another trial takes over from the one that runs.
 //!
 //! A cause may act in a part of a run alone: in a place, in a part of the field's cycle, from a moment on. Within an interlude a
-//! step is one of the other trial, with its field, substrate, surroundings, slope, mass and moment; the body's shape, the relief and the state
-//! go on as they are.
+//! step is one of the other trial, with its field, substrate, surroundings, slope, mass and moment; the body's shape, the relief
+//! and the state go on as they are.
 
 use crate::Trial;
 use crate::error::{Invalid, finite};
