@@ -86,7 +86,6 @@ class Runs:
         rivals = [tried for tried in self.known if not tried.is_part]
         while rivals and (best := self.best(rivals)) not in self.whole:
             self._run([best], inf)
-            self.whole.add(best)
         return min((self.known[tried] for tried in rivals), default=inf)
 
     def _run(self, those: Sequence[Tried], most: float) -> None:
