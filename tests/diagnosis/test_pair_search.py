@@ -198,3 +198,75 @@ def test_where_a_cause_is_strong_the_best_are_joined_and_where_pairs_leave_a_gap
     search.pairing.found(singles, strong=strong, known=known)
     assert joined == ([singles] if strong else [])
     assert searched == ([many] if strong and wanting and not enough else [])
+
+
+def test_what_is_far_away_and_in_the_best_pair_is_one_first_more_beside_what_is_known(
+    search: Search, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fitter = search.fitter
+    size, strength, rough, _ = search.possible
+    first, other = held(fitter, size, 900.0), held(fitter, strength, 1000.0)
+    known = [held(fitter, size + strength, 500.0)]
+    new = held(fitter, size + rough, 400.0)
+    firsts: list[Contender] = []
+
+    def adding(pairs: Pairs, those: Contender, others: Sequence[Contender]) -> None:
+        assert list(others) == [first, other]
+        firsts.append(those)
+        pairs._found[frozenset(new.names)] = new
+
+    def far(*_: object) -> Contender:
+        raise AssertionError("the whole search for pairs")
+
+    monkeypatch.setattr("tumblers.diagnosis.pair_search.settled", as_they_are)
+    monkeypatch.setattr("tumblers.diagnosis.pair_search.from_beginnings", far)
+    monkeypatch.setattr(PairSearch, "exchanged", far)
+    monkeypatch.setattr(Pairs, "join", far)
+    monkeypatch.setattr(Pairs, "add", adding)
+    assert search.pairing.beside(first, [first, other], known) == [new, *known]
+    assert firsts == [first]
+
+
+@pytest.mark.parametrize(
+    ("paired", "likelier", "again"),
+    [(True, True, "beside"), (True, False, "found"), (False, True, "found")],
+)
+def test_pairs_are_searched_again_as_a_whole_unless_what_is_far_away_is_in_a_pair_that_is_likelier(
+    paired: bool, likelier: bool, again: str, search: Search, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fitter = search.fitter
+    size, strength, rough, camera = search.possible
+    near, far = held(fitter, size, 2e6), held(fitter, strength, 1e6)
+    pair = held(fitter, (strength if paired else rough) + camera, 5e5 if likelier else 1.5e6)
+    nominal = replace(near, cost=1e7)
+    called: list[tuple[str, Sequence[Contender]]] = []
+
+    def found(
+        _: PairSearch, singles: Sequence[Contender], *, strong: bool, known: Sequence[Contender] = ()
+    ) -> list[Contender]:
+        assert strong
+        called.append(("found", known))
+        return [pair]
+
+    def beside(
+        _: PairSearch, first: Contender, singles: Sequence[Contender], known: Sequence[Contender]
+    ) -> list[Contender]:
+        assert first is far
+        called.append(("beside", known))
+        return list(known)
+
+    monkeypatch.setattr("tumblers.diagnosis.search.settled", as_they_are)
+    monkeypatch.setattr("tumblers.diagnosis.search.all_shaken", as_they_are)
+    monkeypatch.setattr("tumblers.diagnosis.search.with_counterparts", as_they_are)
+    monkeypatch.setattr("tumblers.diagnosis.search.resolved", lambda _, model, those, __: (model, those))
+    monkeypatch.setattr("tumblers.diagnosis.search.is_wanting", lambda *_: True)
+    monkeypatch.setattr("tumblers.diagnosis.search.is_enough", lambda *_: False)
+    monkeypatch.setattr(search, "_singles", lambda _: [near, replace(far, cost=3e6)])
+    monkeypatch.setattr(search, "_refined", list)
+    monkeypatch.setattr(search, "_far", lambda *_: [far, near])
+    monkeypatch.setattr(search, "_with_shaken_pair", lambda singles, pairs: [*singles, *pairs])
+    monkeypatch.setattr(PairSearch, "found", found)
+    monkeypatch.setattr(PairSearch, "beside", beside)
+    made = search._far_and_wide(nominal)
+    assert called == [("found", ()), (again, [pair])]
+    assert {contender.names for contender in made} == {near.names, far.names, pair.names}
