@@ -264,9 +264,54 @@ def test_pairs_are_searched_again_as_a_whole_unless_what_is_far_away_is_in_a_pai
     monkeypatch.setattr(search, "_singles", lambda _: [near, replace(far, cost=3e6)])
     monkeypatch.setattr(search, "_refined", list)
     monkeypatch.setattr(search, "_far", lambda *_: [far, near])
+    monkeypatch.setattr(search, "_with_moved", lambda singles, pairs: (list(singles), list(pairs)))
     monkeypatch.setattr(search, "_with_shaken_pair", lambda singles, pairs: [*singles, *pairs])
     monkeypatch.setattr(PairSearch, "found", found)
     monkeypatch.setattr(PairSearch, "beside", beside)
     made = search._far_and_wide(nominal)
     assert called == [("found", ()), (again, [pair])]
     assert {contender.names for contender in made} == {near.names, far.names, pair.names}
+
+
+@pytest.mark.parametrize(
+    ("gained", "behind", "again"),
+    [
+        # Much likelier where the pair has it, and the best or near it.
+        (6e5, 0.0, True),
+        (6e5, 1e5, True),
+        # By less than a tenth of what it leaves; or far behind the best even there.
+        (3e4, 0.0, False),
+        (6e5, 1e7, False),
+    ],
+)
+def test_seconds_are_added_to_an_effect_that_the_best_pair_has_moved_to_where_it_is_far_better(
+    gained: float, behind: float, again: bool, search: Search, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fitter = search.fitter
+    size, strength, rough, camera = search.possible
+    least = 1e6
+    alone = held(fitter, strength, behind + least + gained)
+    moved = held(fitter, strength, behind + least)
+    best, idle = held(fitter, size, least), held(fitter, camera, 1e9)
+    pairs = [held(fitter, strength + rough, 5e5), held(fitter, size + rough, 6e5)]
+    called: list[tuple[Contender, Sequence[Contender], Sequence[Contender]]] = []
+
+    def nested(_: Fitter, single: Contender, those: Sequence[Contender]) -> Contender:
+        assert list(those) == pairs[:1]
+        assert single is alone
+        return moved
+
+    def beside(
+        _: PairSearch, first: Contender, singles: Sequence[Contender], known: Sequence[Contender]
+    ) -> list[Contender]:
+        called.append((first, singles, known))
+        return list(reversed(known))
+
+    monkeypatch.setattr("tumblers.diagnosis.search.nested", nested)
+    monkeypatch.setattr(PairSearch, "beside", beside)
+    singles, found = search._with_moved([best, alone, idle], pairs)
+    assert set(singles) == {moved, best, idle}
+    assert singles == sorted(singles, key=lambda single: single.total)
+    assert found == (pairs[::-1] if again else pairs)
+    assert called == ([(moved, singles, pairs)] if again else [])
+    assert search._with_moved([best, alone], []) == ([best, alone], [])

@@ -103,6 +103,18 @@ class Hypothesis:
         return Hypothesis(self.kinds + other.kinds, starts=starts, close=close, **joined)
 
     @property
+    def parts(self) -> list[Hypothesis]:
+        """One hypothesis of each effect, without starts."""
+        made, first = [], 0
+        for kind in self.kinds:
+            those = slice(first, first + len(kind.parameters))
+            none = np.empty((0, len(kind.parameters)))
+            own = {name: getattr(self, name)[those] for name in ("neutral", "scale", "low", "high", "ranges")}
+            made.append(Hypothesis((kind,), starts=none, close=none, **own))
+            first = those.stop
+        return made
+
+    @property
     def free(self) -> int:
         """How many coordinates have a range."""
         return int(np.sum(self.high > self.low))

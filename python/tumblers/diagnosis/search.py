@@ -26,7 +26,7 @@ from .hypothesis import Hypothesis
 from .nearby import all_shaken, shaken
 from .own_noise import IDLE_POINTS, MOST_OWN, NEAR, OWN, again, by_itself, settled
 from .pair_search import PairSearch, is_enough
-from .pairs import AS_GOOD, nested
+from .pairs import AS_GOOD, firsts, nested
 from .predictive import is_right, is_wanting
 from .refined import refined, to_refine
 from .thresholds import CLEAR, beyond_thresholds
@@ -44,8 +44,8 @@ _LEADING, _LEADING_POINTS, _POINTS = 6, 6, 4
 # Hypotheses that are fitted again from the beginnings of the trials; and of those whose points over the range follow
 # the beginnings better than their fit does.
 _REFINED, _PROMISING = 2, 4
-# The leader of before, found farther away, is a new first of pairs where that takes more than this share of what it
-# leaves off the objective.
+# The leader of before, or an effect of the best pair, found farther away, is a new first of pairs where that takes more
+# than this share of what it leaves off the objective.
 _FARTHER = 0.1
 # Of the best that have many minima beside one another, so many are searched by runs that are drawn to the tracks.
 _GUIDED = 3
@@ -172,7 +172,7 @@ class Search:
             searched = {singles[k].names for k in to_refine(singles, _REFINED)}
             singles = settled(self.fitter, self._refined(singles), self.tell)
         if singles[0].total <= worth:
-            pairs = self.pairing.found(singles, strong=True)
+            singles, pairs = self._with_moved(singles, self.pairing.found(singles, strong=True))
         # Where two effects leave no gap, what is far away is not looked for.
         if not is_enough(self.comparison, [*singles, *pairs]):
             far = settled(self.fitter, self._far(singles, searched), self.tell)
@@ -192,6 +192,23 @@ class Search:
         made = self._with_shaken_pair(singles, pairs) if singles[0].total <= worth else [*singles, *pairs]
         made = likeliest_first(made)
         return with_counterparts(self.fitter, made, self.possible, self.tell) if made[0].total <= worth else made
+
+    def _with_moved(
+        self, singles: Sequence[Contender], pairs: Sequence[Contender]
+    ) -> tuple[list[Contender], list[Contender]]:
+        """Fit the best pair's effects again from where they are in it, and add seconds to what is far better there.
+
+        What the seconds were first added to was in the wrong place.
+        """
+        made, found = list(singles), list(pairs)
+        for k, single in enumerate(singles):
+            if not pairs or single.names[0] not in pairs[0].names:
+                continue
+            made[k] = moved = nested(self.fitter, single, pairs[:1])
+            farther = single.total - moved.total > max(self.clear, _FARTHER * moved.cost)
+            if farther and moved in firsts(likeliest_first(made)):
+                found = self.pairing.beside(moved, likeliest_first(made), found)
+        return likeliest_first(made), found
 
     def _with_shaken_pair(self, singles: Sequence[Contender], pairs: Sequence[Contender]) -> list[Contender]:
         """Look around the best pair, and for its best single effect again from there."""
