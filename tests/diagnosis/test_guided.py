@@ -107,6 +107,7 @@ def test_what_one_has_found_of_a_relief_is_right_for_another_too(monkeypatch: py
         return lucky if len(contender.names) == 1 else pair
 
     monkeypatch.setattr(guided, "_by_clouds", by_clouds)
+    monkeypatch.setattr(guided, "is_wanting", lambda *_: True)
     for order in ([0, 1], [1, 0]):
         starts.clear()
         made = found_again(fitter, [alone, pair], order, 0, quiet)
@@ -116,6 +117,30 @@ def test_what_one_has_found_of_a_relief_is_right_for_another_too(monkeypatch: py
         # What is searched later starts with what was found before.
         near = lucky.total + 0.05 * (pair.total - lucky.total)
         assert [start < near for start in starts] == ([False, True] if order[0] == 0 else [False, False])
+    # What leaves no gap is not searched around again.
+    monkeypatch.setattr(guided, "is_wanting", lambda *_: False)
+    starts.clear()
+    made = found_again(fitter, [alone, pair], [0, 1], 0, quiet)
+    assert starts == [alone.total]
+    assert made[1].total == pytest.approx(lucky.total, abs=0.05 * (pair.total - lucky.total))
+
+
+def test_what_leaves_a_gap_beside_another_effect_is_not_searched_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    fitter, relief = lab()
+    (strength,) = Search(fitter, [MagnetizationStrength], quiet, 0).possible
+    stuck = point_of(replace(TRUTH, wavelength_m=1.1 * TRUTH.wavelength_m), relief)
+    alone = settled_at(fitter, relief, stuck)
+    pair = settled_at(fitter, strength + relief, np.concatenate([[0.0], stuck]))
+    searched: list[tuple[str, ...]] = []
+
+    def by_clouds(_fitter: Any, contender: Contender, *_rest: Any) -> None:
+        searched.append(contender.names)
+
+    monkeypatch.setattr(guided, "_by_clouds", by_clouds)
+    for order, names in (([0, 1], [pair.names]), ([1, 0], [alone.names, pair.names])):
+        searched.clear()
+        assert found_again(fitter, [pair, alone], order, 0, quiet) == [pair, alone]
+        assert searched == names
 
 
 def test_a_cloud_at_the_end_of_a_range_stays_within_it() -> None:

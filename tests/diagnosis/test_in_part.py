@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from math import inf
 
@@ -17,7 +18,9 @@ from tumblers.diagnosis.job import Interlude, Job
 from tumblers.diagnosis.localise import localise
 from tumblers.diagnosis.part_axis import along_y, cycle, from_a_moment
 from tumblers.diagnosis.part_runs import Runs
+from tumblers.diagnosis.pose import Path
 from tumblers.diagnosis.result import Region
+from tumblers.diagnosis.simulator import LONGEST_STEP_S
 from tumblers.effects import get
 from tumblers.effects.base import Effect
 from tumblers.effects.electrostatic_force import ElectrostaticForce
@@ -62,6 +65,24 @@ def test_one_trial_tells_the_place_in_which_something_holds_the_robot() -> None:
         regions, _ = localise(comparison, comparison.residual(paths), paths, unexplained)
         told = [(r.low, r.high, r.what) for r in regions if r.axis == "position_y_m"]
         assert ((found.low, found.high, found.what) in told) == unexplained
+
+
+def test_parts_are_looked_for_in_the_longest_steps_which_are_then_as_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    comparison = slow(law=StickySpot(size=0.3, place_m=(1.2e-3, 2.4e-3)))
+    simulator = comparison.simulator
+    simulator.step_s = before = [0.25 * step for step in simulator.step_s]
+    comparison._start()
+    taken = set()
+    run = simulator.run
+
+    def spied(jobs: Sequence[Job]) -> list[Path | None]:
+        taken.update(simulator.nominal(job.trial).run.fixed_step_s for job in jobs)
+        return run(jobs)
+
+    monkeypatch.setattr(simulator, "run", spied)
+    assert "position_y_m" in parts(comparison)
+    assert taken == {LONGEST_STEP_S}
+    assert simulator.step_s == before
 
 
 def test_a_robot_that_is_never_seen_to_leave_a_place_tells_where_it_begins() -> None:

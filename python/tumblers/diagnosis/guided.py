@@ -9,9 +9,10 @@ y ← y + (1 - e^(-γ (t_k - t_(k-1)))) (ŷ_k - y)      at each frame
 
 loses none where it is seen (Abarbanel and others 2009, SIAM J. Appl. Dyn. Syst. 8, 1341); as γ falls, the objective
 comes back to the one that is asked for. ŷ is what the sensor saw as it was fitted to the run on its own (`Guide`). What
-leaves a gap even where its runs are drawn as fast as at first is no relief, and is left. Motion that hops leaves the
-objective rough, so that least squares stop at every hop: it is searched by clouds of points whose covariance adapts
-(CMA-ES; Hansen and Ostermeier 2001, Evol. Comput. 9, 159), in the longer steps as long as runs are drawn.
+leaves a gap even where its runs are drawn as fast as at first is no relief, and is left; and where the best leaves no
+gap any more, the others start from what it has. Motion that hops leaves the objective rough, so that least squares
+stop at every hop: it is searched by clouds of points whose covariance adapts (CMA-ES; Hansen and Ostermeier 2001,
+Evol. Comput. 9, 159), in the longer steps as long as runs are drawn.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ from .fitter import Fitter
 from .guide import Nudge
 from .hypothesis import Hypothesis
 from .own_noise import by_itself, settled
-from .predictive import leaves_a_gap
+from .predictive import is_wanting, leaves_a_gap
 
 __all__ = ["found_again"]
 
@@ -90,11 +91,19 @@ def found_again(
         if not np.array_equal(point, made[k].point):
             keep(k, _fitted(fitter, made[k], point))
 
+    wanting: list[set[str]] = []
     for k in clouded:
         share(k)
+        # What leaves a gap with another effect beside it leaves one without.
+        if any(names.issuperset(made[k].names) for names in wanting):
+            continue
         found = _by_clouds(fitter, made[k], rates, seed, on_cloud)
-        if found is not None:
-            keep(k, found)
+        if found is None:
+            wanting.append(set(made[k].names))
+            continue
+        keep(k, found)
+        if not is_wanting(fitter.comparison, best().residual):
+            break
     for k in which:
         share(k)
     return made

@@ -93,11 +93,28 @@ def acts_in_part(
     if not trials:
         return ()
 
+    with comparison.restored():
+        # What is not explained moves the robot by much more than the longest steps get wrong.
+        comparison.simulator.take_longest_steps()
+        tell = on_phase or (lambda _phase, _done, _total: None)
+        return _parts(comparison, residual, paths, trials, shares, effects, tell)
+
+
+def _parts(
+    comparison: Comparison,
+    residual: Residual,
+    paths: Sequence[Path | None],
+    trials: Sequence[int],
+    shares: Sequence[float],
+    effects: tuple[Effect, ...],
+    tell: OnPhase,
+) -> tuple[Region, ...]:
+    """Return what `acts_in_part` does of some trials, in the steps of the moment."""
+
     def left(found: Sequence[Path | None]) -> float:
         return sum(left_of(comparison, residual, i, path) for i, path in zip(trials, found, strict=True))
 
-    tell = on_phase or (lambda _phase, _done, _total: None)
-    nothing = left([paths[i] for i in trials])
+    nothing = left(comparison.simulator.run([Job(i) for i in trials]))
     all_along = min(nothing, left(comparison.simulator.run([Job(i, effects) for i in trials])))
     axes = [cycle(comparison, trials), along_y(comparison, residual, paths, trials)]
     axes += [from_a_moment(comparison, trials, kind) for kind in (DRIVE, TURN)]

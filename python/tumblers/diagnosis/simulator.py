@@ -209,6 +209,10 @@ class Simulator:
         """Take twice the steps, but none that is longer than the longest."""
         self.step_s = [min(2.0 * step, most) for step, most in zip(self.step_s, self._longest_s(), strict=True)]
 
+    def take_longest_steps(self) -> None:
+        """Take the steps that are tried first."""
+        self.step_s = self._longest_s()
+
     def shorten_steps_for(self, effects: Sequence[Effect]) -> bool:
         """Take the steps that effects are run in for the nominal model too, and return whether any changed.
 
