@@ -125,6 +125,27 @@ def test_what_one_has_found_of_a_relief_is_right_for_another_too(monkeypatch: py
     assert made[1].total == pytest.approx(lucky.total, abs=0.05 * (pair.total - lucky.total))
 
 
+@pytest.mark.parametrize(("first", "clouds"), [(None, 36), (12, 60), (13, 36)])
+def test_a_rate_whose_first_clouds_find_nothing_better_ends(
+    first: int | None, clouds: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fitter, hypothesis = lab()
+    off = replace(TRUTH, wavelength_m=1.1 * TRUTH.wavelength_m)
+    stuck = settled_at(fitter, hypothesis, point_of(off, hypothesis))
+    moved: dict[int, int] = {}
+
+    def move(cloud: _Cloud) -> bool:
+        moved[id(cloud)] = moved.get(id(cloud), 0) + 1
+        kept.append(cloud)
+        return moved[id(cloud)] == first
+
+    kept: list[_Cloud] = []
+    monkeypatch.setattr(_Cloud, "move", move)
+    monkeypatch.setattr(_Cloud, "is_wanting", lambda _: False)
+    found_again(fitter, [stuck], [0], 0, quiet)
+    assert len(kept) == clouds
+
+
 def test_what_leaves_a_gap_beside_another_effect_is_not_searched_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     fitter, relief = lab()
     (strength,) = Search(fitter, [MagnetizationStrength], quiet, 0).possible

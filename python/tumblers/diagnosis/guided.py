@@ -43,6 +43,9 @@ Floats = NDArray[np.float64]
 # three. In a small lab both lead to it.
 _RATES = ((20.0, 30, 1.0), (5.0, 15, 0.6), (0.0, 15, 0.4))
 _CLOUD, _SPREAD = 16, 0.05
+# A rate whose first so many clouds have found nothing better ends. A choice: where a relief was to be found the first
+# that was better was one of nine, and around one that had been found already 60 found nothing in the end.
+_IDLE = 12
 # What such a value counts at least, in its range.
 _LEAST_VALUE = 0.02
 # Trial points of the fit from where the last cloud ends.
@@ -138,9 +141,12 @@ def _by_clouds(
         with fitter.comparison.in_longer_steps() if rate > 0.0 else nullcontext():
             fitter.take_likeliest_noise(hypothesis.effects(point))
             cloud = _Cloud(fitter, hypothesis, point, width * spread, rate, seed)
-            for _ in range(clouds):
+            found = False
+            for n in range(clouds):
                 on_cloud()
-                cloud.move()
+                found |= cloud.move()
+                if n + 1 == _IDLE and not found:
+                    break
             if rate == rates[0][0] and cloud.is_wanting():
                 return None
         point = cloud.best
@@ -186,8 +192,8 @@ class _Cloud:
             population_size=_CLOUD,
         )
 
-    def move(self) -> None:
-        """Look at the points of one cloud, and let the next one be where they are best."""
+    def move(self) -> bool:
+        """Look at the points of a cloud, let the next one be where they are best, and return whether one is better."""
         asked = [self._moving.ask() for _ in range(_CLOUD)]
         points = [self.best.copy() for _ in asked]
         for point, values in zip(points, asked, strict=True):
@@ -197,8 +203,10 @@ class _Cloud:
         costs = self._costs(points)
         self._moving.tell(list(zip(asked, costs, strict=True)))
         k = int(np.argmin(costs))
-        if costs[k] < self._least:
+        better = costs[k] < self._least
+        if better:
             self.best, self._least = points[k], costs[k]
+        return better
 
     def is_wanting(self) -> bool:
         """Whether even runs that are drawn to the tracks leave a gap in them at the best point."""
