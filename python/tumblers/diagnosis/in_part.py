@@ -88,14 +88,13 @@ def acts_in_part(
     order = sorted(range(len(shares)), key=lambda i: -shares[i])
     tracked = [i for i in order if paths[i] is not None and comparison.floors[i].tracked]
     trials = [i for i in tracked if shares[i] >= _LEAST_SHARE][:_MOST_TRIALS]
-    while trials and sum(comparison.simulator.nominal(i).run.steps for i in trials) > _MOST_STEPS:
-        trials.pop()
-    if not trials:
-        return ()
-
     with comparison.restored():
         # What is not explained moves the robot by much more than the longest steps get wrong.
         comparison.simulator.take_longest_steps()
+        while trials and sum(comparison.simulator.nominal(i).run.steps for i in trials) > _MOST_STEPS:
+            trials.pop()
+        if not trials:
+            return ()
         tell = on_phase or (lambda _phase, _done, _total: None)
         return _parts(comparison, residual, paths, trials, shares, effects, tell)
 
