@@ -146,24 +146,6 @@ def test_a_rate_whose_first_clouds_find_nothing_better_ends(
     assert len(kept) == clouds
 
 
-def test_what_leaves_a_gap_beside_another_effect_is_not_searched_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    fitter, relief = lab()
-    (strength,) = Search(fitter, [MagnetizationStrength], quiet, 0).possible
-    stuck = point_of(replace(TRUTH, wavelength_m=1.1 * TRUTH.wavelength_m), relief)
-    alone = settled_at(fitter, relief, stuck)
-    pair = settled_at(fitter, strength + relief, np.concatenate([[0.0], stuck]))
-    searched: list[tuple[str, ...]] = []
-
-    def by_clouds(_fitter: Any, contender: Contender, *_rest: Any) -> None:
-        searched.append(contender.names)
-
-    monkeypatch.setattr(guided, "_by_clouds", by_clouds)
-    for order, names in (([0, 1], [pair.names]), ([1, 0], [alone.names, pair.names])):
-        searched.clear()
-        assert found_again(fitter, [pair, alone], order, 0, quiet) == [pair, alone]
-        assert searched == names
-
-
 def test_a_cloud_at_the_end_of_a_range_stays_within_it() -> None:
     """Its bounds are divided by its widths, and what is asked for multiplied: rounding may carry it beyond."""
     fitter, hypothesis = lab()

@@ -76,13 +76,33 @@ def test_parts_are_looked_for_in_the_longest_steps_which_are_then_as_before(monk
     run = simulator.run
 
     def spied(jobs: Sequence[Job]) -> list[Path | None]:
-        taken.update(simulator.nominal(job.trial).run.fixed_step_s for job in jobs)
+        taken.update(simulator.nominal(job.trial).run.fixed_step_s for job in jobs if job.interlude is not None)
         return run(jobs)
 
     monkeypatch.setattr(simulator, "run", spied)
     assert "position_y_m" in parts(comparison)
     assert taken == {LONGEST_STEP_S}
     assert simulator.step_s == before
+
+
+def test_what_acts_all_along_is_run_in_the_steps_that_it_asks_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    comparison = slow(law=StickySpot(size=0.3, place_m=(1.2e-3, 2.4e-3)))
+    simulator, effects = comparison.simulator, (ElectrostaticForce(added_force_N=1e-7),)
+    simulator.step_s = before = [0.25 * step for step in simulator.step_s]
+    comparison._start()
+    taken = []
+    run = simulator.run
+
+    def spied(jobs: Sequence[Job]) -> list[Path | None]:
+        taken.extend(list(simulator.step_s) for job in jobs if job.effects == effects)
+        return run(jobs)
+
+    monkeypatch.setattr(simulator, "run", spied)
+    # Nothing is searched: it is seen before.
+    monkeypatch.setattr("tumblers.diagnosis.in_part._parts", lambda *_: ())
+    paths = comparison.nominal_paths
+    assert not acts_in_part(comparison, comparison.residual(paths), paths, [1.0], effects)
+    assert taken == [before]
 
 
 def test_a_robot_that_is_never_seen_to_leave_a_place_tells_where_it_begins() -> None:

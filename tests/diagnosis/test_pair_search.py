@@ -291,6 +291,8 @@ def test_seconds_are_added_to_an_effect_that_the_best_pair_has_moved_to_where_it
     size, strength, rough, camera = search.possible
     least = 1e6
     alone = held(fitter, strength, behind + least + gained)
+    # Flattered by the noise around another.
+    flattered = replace(alone, cost=0.5 * (behind + least), settled=False)
     moved = held(fitter, strength, behind + least)
     best, idle = held(fitter, size, least), held(fitter, camera, 1e9)
     pairs = [held(fitter, strength + rough, 5e5), held(fitter, size + rough, 6e5)]
@@ -307,9 +309,16 @@ def test_seconds_are_added_to_an_effect_that_the_best_pair_has_moved_to_where_it
         called.append((first, singles, known))
         return list(reversed(known))
 
+    def by_itself(_: Fitter, single: Contender, *, evaluations: int) -> Contender:
+        assert (single, evaluations) == (flattered, 1)
+        return alone
+
     monkeypatch.setattr("tumblers.diagnosis.search.nested", nested)
+    monkeypatch.setattr("tumblers.diagnosis.search.by_itself", by_itself)
     monkeypatch.setattr(PairSearch, "beside", beside)
-    singles, found = search._with_moved([best, alone, idle], pairs)
+    assert search._with_moved([best, alone, idle], pairs)[1] == (pairs[::-1] if again else pairs)
+    called.clear()
+    singles, found = search._with_moved([best, flattered, idle], pairs)
     assert set(singles) == {moved, best, idle}
     assert singles == sorted(singles, key=lambda single: single.total)
     assert found == (pairs[::-1] if again else pairs)

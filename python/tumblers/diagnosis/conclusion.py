@@ -112,13 +112,13 @@ def _equally_far(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase)
     pairs = [k for k in near if len(made[k].names) > 1][:_PAIRS_EQUALLY_FAR]
     singles = sorted((k for k in near if len(made[k].names) == 1), key=lambda k: (k != order[0], costs[k]))
     singles = singles[:_EQUALLY_FAR]
-    for n, k in enumerate([*pairs, *singles]):
-        tell("fitting those near the best as far", n, len(pairs) + len(singles))
-        if k in singles:
-            alone = made[k] if made[k].settled else by_itself(fitter, made[k], evaluations=1)
-            made[k] = nested(fitter, alone, [c for c in made if len(c.names) > 1])
-        made[k] = as_far(fitter, made[k], alike)
     for those in (pairs, singles):
+        for n, k in enumerate(those):
+            tell("fitting those near the best as far", n, len(those))
+            if those is singles:
+                alone = made[k] if made[k].settled else by_itself(fitter, made[k], evaluations=1)
+                made[k] = nested(fitter, alone, [c for c in made if len(c.names) > 1])
+            made[k] = as_far(fitter, made[k], alike)
         those.sort(key=lambda k: made[k].total)
         for n, k in enumerate(those[1:]):
             tell("from where the best is", n, len(those) - 1)

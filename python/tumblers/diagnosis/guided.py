@@ -94,15 +94,10 @@ def found_again(
         if not np.array_equal(point, made[k].point):
             keep(k, _fitted(fitter, made[k], point))
 
-    wanting: list[set[str]] = []
     for k in clouded:
         share(k)
-        # What leaves a gap with another effect beside it leaves one without.
-        if any(names.issuperset(made[k].names) for names in wanting):
-            continue
         found = _by_clouds(fitter, made[k], rates, seed, on_cloud)
         if found is None:
-            wanting.append(set(made[k].names))
             continue
         keep(k, found)
         if not is_wanting(fitter.comparison, best().residual):

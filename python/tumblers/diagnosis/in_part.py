@@ -16,6 +16,8 @@ well have met something at a moment, from which on the field drives it by less: 
 from a moment on is like nothing else. Of the cycle, the way and the time each is told that leaves not much more than
 another.
 
+All that is tried runs in the longest steps, but for what was found to act all along.
+
 A trial is in a place while the robot was seen there, not while the model is: a model that is right is there then. The
 ends are the means over all S that were tried, each with the u that does best for it, of weights e^(-C/2ac): a robot
 that jumps over a place does not say whether it belongs to S.
@@ -88,6 +90,8 @@ def acts_in_part(
     order = sorted(range(len(shares)), key=lambda i: -shares[i])
     tracked = [i for i in order if paths[i] is not None and comparison.floors[i].tracked]
     trials = [i for i in tracked if shares[i] >= _LEAST_SHARE][:_MOST_TRIALS]
+    # In the steps that they ask for: in longer ones they may do something else, and would not stand in a part's way.
+    best = comparison.simulator.run([Job(i, effects) for i in trials])
     with comparison.restored():
         # What is not explained moves the robot by much more than the longest steps get wrong.
         comparison.simulator.take_longest_steps()
@@ -96,7 +100,7 @@ def acts_in_part(
         if not trials:
             return ()
         tell = on_phase or (lambda _phase, _done, _total: None)
-        return _parts(comparison, residual, paths, trials, shares, effects, tell)
+        return _parts(comparison, residual, paths, trials, shares, best[: len(trials)], tell)
 
 
 def _parts(
@@ -105,16 +109,18 @@ def _parts(
     paths: Sequence[Path | None],
     trials: Sequence[int],
     shares: Sequence[float],
-    effects: tuple[Effect, ...],
+    best: Sequence[Path | None],
     tell: OnPhase,
 ) -> tuple[Region, ...]:
-    """Return what `acts_in_part` does of some trials, in the steps of the moment."""
+    """Return what `acts_in_part` does of some trials, in the steps of the moment; `best` is what acts all along."""
 
     def left(found: Sequence[Path | None]) -> float:
         return sum(left_of(comparison, residual, i, path) for i, path in zip(trials, found, strict=True))
 
     nothing = left(comparison.simulator.run([Job(i) for i in trials]))
-    all_along = min(nothing, left(comparison.simulator.run([Job(i, effects) for i in trials])))
+    if nothing == inf:
+        return ()
+    all_along = min(nothing, left(best))
     axes = [cycle(comparison, trials), along_y(comparison, residual, paths, trials)]
     axes += [from_a_moment(comparison, trials, kind) for kind in (DRIVE, TURN)]
     searched: list[Runs] = []
@@ -134,11 +140,11 @@ def _parts(
     told: dict[str, Region] = {}
     # Of two of one axis the one that leaves less.
     for runs in sorted(searched, key=lambda runs: -_least_part(runs)):
-        best = _best_part(runs)
-        if best is not None and runs.known[best] <= _HARDLY_MORE * least and _stands_out(runs, best, nothing, rest):
-            share = sum(shares[i] for i in trials) * (1.0 - runs.known[best] / nothing)
-            what = words_of(best.kind.effects(best.strength, comparison.simulator.nominal(trials[0])))
-            told[runs.axis.name] = Region(runs.axis.name, share, *_mean_ends(runs, best), what=what)
+        part = _best_part(runs)
+        if part is not None and runs.known[part] <= _HARDLY_MORE * least and _stands_out(runs, part, nothing, rest):
+            share = sum(shares[i] for i in trials) * (1.0 - runs.known[part] / nothing)
+            what = words_of(part.kind.effects(part.strength, comparison.simulator.nominal(trials[0])))
+            told[runs.axis.name] = Region(runs.axis.name, share, *_mean_ends(runs, part), what=what)
     return tuple(told.values())
 
 

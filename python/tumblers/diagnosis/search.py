@@ -204,8 +204,9 @@ class Search:
         for k, single in enumerate(singles):
             if not pairs or single.names[0] not in pairs[0].names:
                 continue
-            made[k] = moved = nested(self.fitter, single, pairs[:1])
-            farther = single.total - moved.total > max(self.clear, _FARTHER * moved.cost)
+            alone = single if single.settled else by_itself(self.fitter, single, evaluations=1)
+            made[k] = moved = nested(self.fitter, alone, pairs[:1])
+            farther = alone.total - moved.total > max(self.clear, _FARTHER * moved.cost)
             if farther and moved in firsts(likeliest_first(made)):
                 found = self.pairing.beside(moved, likeliest_first(made), found)
         return likeliest_first(made), found
