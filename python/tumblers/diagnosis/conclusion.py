@@ -115,7 +115,7 @@ def _equally_far(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase)
     for those in (pairs, singles):
         for n, k in enumerate(those):
             tell("fitting those near the best as far", n, len(those))
-            if those is singles:
+            if len(made[k].names) == 1:
                 alone = made[k] if made[k].settled else by_itself(fitter, made[k], evaluations=1)
                 made[k] = nested(fitter, alone, [c for c in made if len(c.names) > 1])
             made[k] = as_far(fitter, made[k], alike)
