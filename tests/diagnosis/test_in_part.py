@@ -105,6 +105,23 @@ def test_what_acts_all_along_is_run_in_the_steps_that_it_asks_for(monkeypatch: p
     assert taken == [before]
 
 
+def test_nothing_is_told_where_the_nominal_model_cannot_be_run_in_the_longest_steps(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    comparison = slow(law=StickySpot(size=0.3, place_m=(1.2e-3, 2.4e-3)))
+    simulator, paths = comparison.simulator, comparison.nominal_paths
+    run, asked = simulator.run, []
+
+    def spied(jobs: Sequence[Job]) -> list[Path | None]:
+        asked.extend(jobs)
+        return run(jobs) if len(asked) == 1 else [None for _ in jobs]
+
+    monkeypatch.setattr(simulator, "run", spied)
+    assert acts_in_part(comparison, comparison.residual(paths), paths, [1.0]) == ()
+    # Nor is anything searched.
+    assert len(asked) == 2
+
+
 def test_a_robot_that_is_never_seen_to_leave_a_place_tells_where_it_begins() -> None:
     place = 1.2e-3, 2.7e-3
     comparison = slow(law=StickySpot(size=1.0, place_m=place))
