@@ -114,24 +114,6 @@ def test_what_ended_beside_its_valley_is_fitted_from_where_it_does_what_the_best
     assert gradient.gradient_T_per_m[1] == pytest.approx(0.1, rel=0.15)
 
 
-def test_of_two_pairs_that_share_an_effect_the_second_is_fitted_from_where_the_best_is() -> None:
-    truth = StrayFieldGradient(gradient_T_per_m=(0.0, 0.1, 0.0)), SizeError(length_factor=1.1)
-    dataset = measure(plan(PLANS[:3]), truth, seed=3)
-    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
-    kinds = [SizeError, SubstrateTilt, StrayFieldGradient, ViscousDrag]
-    size, tilt, gradient, drag = Search(fitter, kinds, quiet, 0).possible
-    sized = (np.array(SizeError(length_factor=1.1).to_fit((1.1, 1.0))) - size.neutral) / size.scale
-    best = settled_at(fitter, size + tilt, np.concatenate([sized, [0.0, -0.67]]), evaluations=6)
-    stuck = settled_at(fitter, gradient + size, np.concatenate([[0.0, 0.4, -0.3, 0.0], sized]))
-    assert stuck.total > best.total + 100.0
-    found = _from_counterparts(fitter, stuck, best)
-    assert set(found.names) == set(stuck.names)
-    assert found.total < best.total + fitter.comparison.objective_of(CLEAR)
-    # Of what it shares nothing with, nothing is known.
-    other = settled_at(fitter, drag + gradient, np.zeros(5))
-    assert _from_counterparts(fitter, other, best) is other
-
-
 def test_the_last_fits_start_from_where_the_best_of_all_is(monkeypatch: pytest.MonkeyPatch) -> None:
     fitter, tilt, stuck = _tilt_and_gradient()
     # The tilt is not at its best, and a pair leads, by less than a second effect has to add.

@@ -147,16 +147,3 @@ def test_a_form_is_no_strength() -> None:
     assert (gradient.free, gradient.strengths) == (4, 4)
     assert (friction + gradient).strengths == 5
     assert friction.held(np.array([True, False])).strengths == 0
-
-
-def test_the_parts_of_two_effects_are_each_by_itself_as_far_as_they_are_free() -> None:
-    scenario = Simulator(plan()).nominal(0)
-    size, gradient = (Hypothesis.of(kind, [scenario]) for kind in (SizeError, StrayFieldGradient))
-    held = gradient.held(np.array([True, False, False, True]))
-    parts = (size + held).parts
-    assert [part.names for part in parts] == [("size_error",), ("stray_field_gradient",)]
-    for part, whole in zip(parts, (size, held), strict=True):
-        for name in ("neutral", "scale", "low", "high", "ranges"):
-            assert_allclose(getattr(part, name), getattr(whole, name), rtol=0.0)
-    assert parts[1].free == 2
-    assert len(parts[0].starts) == 0

@@ -112,34 +112,27 @@ def _equally_far(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase)
     pairs = [k for k in near if len(made[k].names) > 1][:_PAIRS_EQUALLY_FAR]
     singles = sorted((k for k in near if len(made[k].names) == 1), key=lambda k: (k != order[0], costs[k]))
     singles = singles[:_EQUALLY_FAR]
-    for those in (pairs, singles):
-        for n, k in enumerate(those):
-            tell("fitting those near the best as far", n, len(those))
-            if len(made[k].names) == 1:
-                alone = made[k] if made[k].settled else by_itself(fitter, made[k], evaluations=1)
-                made[k] = nested(fitter, alone, [c for c in made if len(c.names) > 1])
-            made[k] = as_far(fitter, made[k], alike)
-        those.sort(key=lambda k: made[k].total)
-        for n, k in enumerate(those[1:]):
-            tell("from where the best is", n, len(those) - 1)
-            made[k] = _from_counterparts(fitter, made[k], made[those[0]])
+    for n, k in enumerate([*pairs, *singles]):
+        tell("fitting those near the best as far", n, len(pairs) + len(singles))
+        if k in singles:
+            alone = made[k] if made[k].settled else by_itself(fitter, made[k], evaluations=1)
+            made[k] = nested(fitter, alone, [c for c in made if len(c.names) > 1])
+        made[k] = as_far(fitter, made[k], alike)
+    singles.sort(key=lambda k: made[k].total)
+    for n, k in enumerate(singles[1:]):
+        tell("from where the best is", n, len(singles) - 1)
+        made[k] = _from_counterparts(fitter, made[k], made[singles[0]])
     # A pair that adds less than a second effect must neither leads nor lends its noise: that would favour its own parts
     # before others that do the same.
     return sorted(made, key=lambda contender: parsimonious_total(contender, fitter.comparison))
 
 
 def _from_counterparts(fitter: Fitter, contender: Contender, best: Contender) -> Contender:
-    """Fit an effect also from where it does what the best one does, and return what is likelier.
-
-    Of a pair the one that the best pair does not have, beside the one that it has.
-    """
+    """Fit an effect also from where it does what the best one does, and return what is likelier."""
     assert contender.fit is not None
     assert best.fit is not None
-    others = [kind for kind in best.fit.hypothesis.kinds if kind.name not in contender.names]
-    if len(others) != 1:
-        return contender
-    possible = [*best.fit.hypothesis.parts, *contender.fit.hypothesis.parts]
-    for c in as_good(fitter, best, others[0], possible):
+    (kind,) = best.fit.hypothesis.kinds
+    for c in as_good(fitter, best, kind, [contender.fit.hypothesis]):
         from_there = as_far(fitter, settled_at(fitter, c.hypothesis, c.point), fitter.comparison.alike)
         contender = likeliest([contender, from_there])
     return contender

@@ -27,8 +27,6 @@ PRIOR_SIGMA = 0.5
 SECOND = 10.0
 # How far beside a coordinate is.
 _BESIDE = 1e-6
-# What a hypothesis has for each parameter, beside the points.
-_BY_PARAMETER = ("neutral", "scale", "low", "high", "ranges")
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,21 +95,12 @@ class Hypothesis:
 
     def __add__(self, other: Hypothesis) -> Hypothesis:
         """Both sets of effects; only `other` has starts, from this one's neutral point."""
-        joined = {name: np.concatenate([getattr(self, name), getattr(other, name)]) for name in _BY_PARAMETER}
+        joined = {
+            name: np.concatenate([getattr(self, name), getattr(other, name)])
+            for name in ("neutral", "scale", "low", "high", "ranges")
+        }
         starts, close = (np.hstack([np.zeros((len(s), len(self.neutral))), s]) for s in (other.starts, other.close))
         return Hypothesis(self.kinds + other.kinds, starts=starts, close=close, **joined)
-
-    @property
-    def parts(self) -> list[Hypothesis]:
-        """One hypothesis of each effect, without starts."""
-        made, first = [], 0
-        for kind in self.kinds:
-            those = slice(first, first + len(kind.parameters))
-            none = np.empty((0, len(kind.parameters)))
-            own = {name: getattr(self, name)[those] for name in _BY_PARAMETER}
-            made.append(Hypothesis((kind,), starts=none, close=none, **own))
-            first = those.stop
-        return made
 
     @property
     def free(self) -> int:
