@@ -18,7 +18,7 @@ from tumblers.blind.records import Record, read_records
 from tumblers.blind.repeated import Repeated
 from tumblers.blind.score import Scores, score_records
 from tumblers.blind.share import Share
-from tumblers.blind.ties import difference_sigma, effect_of
+from tumblers.blind.ties import Tie, difference_sigma, effect_of, nearest_sigma
 from tumblers.dataset import Dataset, LabTrial, Outcome, Sensor
 from tumblers.diagnosis.floor import TOLERANCES
 from tumblers.field import RotatingField
@@ -128,7 +128,7 @@ def scored(tie_sigma: float = 0.5) -> Scores:
                said("unexplained", where=({"axis": "time_s", "low": 0.0, "high": 2.0, "share_of_gap": 1.0},))),
         record(11, answer("outside", ("gusts", "outside", {})), None, seconds=200.0),
     ]  # fmt: skip
-    return score_records(records, 7, lambda _: tie_sigma)
+    return score_records(records, 7, lambda _: Tie(tie_sigma))
 
 
 def value(scores: Scores, words: str) -> float | None:
@@ -145,7 +145,7 @@ def test_what_is_explained_is_right_where_all_causes_are_named_and_nothing_else(
 def test_the_page_tells_what_two_causes_show_beside_each_other_where_the_answers_do(beside: float | None) -> None:
     truth = answer("two", FRICTION, TILT)
     truth = replace(truth, effects=tuple(replace(cause, beside_sigma=beside) for cause in truth.effects))
-    page = page_of(score_records([record(0, truth, said("no_gap"))], 1, lambda _: 0.0))
+    page = page_of(score_records([record(0, truth, said("no_gap"))], 1, lambda _: Tie(0.0)))
     assert ("either of two alone and where the other is at work are to show 4.5 sigma" in page) == (beside is not None)
     assert ("of two with 1 sigma of either beside the other" in page) == (beside is not None)
 
@@ -160,7 +160,7 @@ def test_what_was_diagnosed_again_counts_for_time_and_sameness() -> None:
         )
         for number, processor_s in enumerate((90.0, 110.0, 280.0))
     ]
-    scores = score_records([*again, record(3, answer("none"), said("no_gap", shrink=None))], 7, lambda _: 0.0)
+    scores = score_records([*again, record(3, answer("none"), said("no_gap", shrink=None))], 7, lambda _: Tie(0.0))
     # 100 s on the wall and 110 s of the processors: 90 s on one core. 150 s and 280 s: 20 s, and 260 s on all.
     assert value(scores, "longest of the slowest again, alone, on 4 cores by Amdahl's law, s") == pytest.approx(95.0)
     assert value(scores, "diagnosed again") == pytest.approx(2 / 3)
@@ -177,7 +177,7 @@ def test_a_time_that_is_not_derived_is_said_as_it_was_measured(
 ) -> None:
     again = Repeated(seconds=150.0, processor_s=processor_s, threads=4, cores=cores, same=True)
     one = replace(record(0, answer("none"), said("no_gap", shrink=None)), repeated=again)
-    scores = score_records([one], 7, lambda _: 0.0)
+    scores = score_records([one], 7, lambda _: Tie(0.0))
     assert value(scores, f"longest of the slowest again, {words}") == expected
     assert "at most 150 s." in page_of(scores)
 
@@ -235,6 +235,17 @@ def test_a_tie_that_simulation_does_not_bear_out_does_not_count() -> None:
     assert value(scored(tie_sigma=1.5), words) == 0.75
 
 
+def test_a_tie_of_effects_counts_whatever_the_form_of_the_truth_shows_beside() -> None:
+    words = "one effect of 3 sigma or more: named first or truly tied"
+    truth = answer("one", TILT)
+    pulled = ("stray_field_gradient", {"gradient_T_per_m[1]": (0.02, 0.01, 0.03)})
+    wrong = said("explained", pulled, ties=("substrate_tilt",))
+    for tie, hit, by_effect in ((Tie(2.7, 0.1), 1.0, 1), (Tie(2.7, 1.1), 0.0, 0), (Tie(0.9), 1.0, 0)):
+        scores = score_records([record(0, truth, wrong)], 7, lambda _, tie=tie: tie)
+        assert value(scores, words) == hit
+        assert scores.tied_by_effect == by_effect
+
+
 @pytest.mark.parametrize(
     ("named", "tie_sigma", "hits"),
     [
@@ -250,7 +261,7 @@ def test_of_two_effects_one_may_have_the_place_of_one_that_it_is_truly_tied_with
     named: tuple[str, ...], tie_sigma: float, hits: int
 ) -> None:
     diagnosis = said("explained", *((name, {}) for name in named), ties=("substrate_tilt", "friction_coefficient"))
-    scores = score_records([record(0, answer("two", FRICTION, TILT), diagnosis)], 7, lambda _: tie_sigma)
+    scores = score_records([record(0, answer("two", FRICTION, TILT), diagnosis)], 7, lambda _: Tie(tie_sigma))
     assert scores.both_or_tied == Share(hits, 1)
     assert f"Of 1 with two effects, {hits} have both named, or one" in page_of(scores)
 
@@ -284,7 +295,7 @@ def test_the_page_says_how_far_the_worlds_numbers_are_off() -> None:
 
 
 def test_scores_of_nothing_are_not_numbers() -> None:
-    scores = score_records([record(0, answer("none"), None)], 1, lambda _: 0.0)
+    scores = score_records([record(0, answer("none"), None)], 1, lambda _: Tie(0.0))
     assert value(scores, "median shrink, another") is None
     assert "nothing to measure" in page_of(scores)
 
@@ -435,6 +446,9 @@ def test_explanations_that_foretell_the_same_do_not_differ() -> None:
     soft = [law_of(weak, "partly_soft", 5)]
     assert difference_sigma(data, soft, [law_of(weak, "partly_soft", 5)]) == 0.0
     assert difference_sigma(data, soft, [EffectLaw(weak)]) > 0.1
+    # What its effect shows, in the size that comes nearest, is the same as what a magnet shows that is as weak.
+    assert nearest_sigma(data, effect_of("magnetization_strength", {"factor": 0.5}), [EffectLaw(weak)]) < 0.01
+    assert nearest_sigma(data, effect_of("magnetization_strength", {"factor": 0.9}), longer) > 3.0
     # A force that pulls it off the substrate cannot be compared.
     lifted = [EffectLaw(effect_of("electrostatic_force", {"added_force_N": -1.0}))]
     assert difference_sigma(data, lifted, []) == float("inf")
@@ -446,5 +460,5 @@ def test_explanations_that_foretell_the_same_do_not_differ() -> None:
 def test_a_region_across_the_end_of_the_cycle_overlaps_one_at_its_beginning(low: float, high: float, hit: bool) -> None:
     truth = answer("outside", ("amplifier_dropout", "outside", {}), where={"cycle_phase_deg": (350.0, 460.0)})
     pointed = {"axis": "cycle_phase_deg", "low": low, "high": high, "share_of_gap": 1.0}
-    scores = score_records([record(0, truth, said("unexplained", where=(pointed,)))], 1, lambda _: 0.0)
+    scores = score_records([record(0, truth, said("unexplained", where=(pointed,)))], 1, lambda _: Tie(0.0))
     assert (scores.regions["cycle_phase_deg"].hits, scores.regions["cycle_phase_deg"].count) == (int(hit), 1)

@@ -50,6 +50,7 @@ def page_of(scores: Scores) -> str:
         "tied where the diagnosis itself says that it cannot tell it from the first, and the first's estimate shows "
         "with the lab's "
         f"numbers what the truth, in its own form, shows with the world's, to {TIE_SIGMA:g} sigma, by simulation, "
+        "or where the truth has another form what its effect shows in the catalogue's form, in some size, "
         "after the sensor's tolerances and a standard deviation of each nominal number have taken what they can of the "
         "difference, as they do of a cause's strength.",
         "## What has to hold",
@@ -70,6 +71,7 @@ def page_of(scores: Scores) -> str:
             ],
         ),
         _explained(scores),
+        _tied_by_effect(scores),
         _tied_pairs(scores),
         "## One effect, by its strength",
         _table(
@@ -206,12 +208,20 @@ def print_scores(scores: Scores) -> None:
         table.add_row(name, _percent(share.share), str(share.count))
     console.print(table)
     console.print(_explained(scores))
+    console.print(_tied_by_effect(scores))
     console.print(_tied_pairs(scores))
 
 
 def _explained(scores: Scores) -> str:
     said = scores.explained
     return f"Of {said.count} that are `explained`, {said.hits} name all that was at work and nothing else."
+
+
+def _tied_by_effect(scores: Scores) -> str:
+    return (
+        f"Of the single effects that are truly tied {scores.tied_by_effect} are so in what their effect shows in the "
+        f"catalogue's form, while their own form shows {TIE_SIGMA:g} sigma or more beside it."
+    )
 
 
 def _tied_pairs(scores: Scores) -> str:

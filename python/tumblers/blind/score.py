@@ -20,22 +20,23 @@ from .overlap import CLEAR, all_trials, halves, overlap, pointed_out, regions
 from .records import Record, read_records
 from .repeated import Repeated
 from .share import Share, share_of, together
-from .ties import difference_sigma, effect_of
+from .ties import Tie, difference_sigma, effect_of, nearest_sigma
 
 __all__ = ["CORES", "Criterion", "Scores", "TieCheck", "score", "score_records"]
 
 FORMAT = "tumblers-blind-scores/2"
 STRENGTH_BINS = ((0.0, 1.0), (1.0, 3.0), (3.0, 10.0), (10.0, inf))
 PROBABILITY_BINS = ((0.0, 0.2), (0.2, 0.4), (0.4, 0.6), (0.6, 0.8), (0.8, 1.0))
-# An effect named for another one is a tie where what it says differs from the true world by less than the noise,
-# after the sensor's tolerances and what the lab's numbers may be off have taken what they can of that.
+# An effect named for another one is a tie where what it says differs from the true world by less than the noise, or
+# from the true effect in the catalogue's form, after the sensor's tolerances and what the lab's numbers may be off have
+# taken what they can of that.
 TIE_SIGMA = 1.0
 # Of a diagnosis, at most, and on how many cores.
 CORES, _SLOWEST_S = 4, 180.0
 # Whether a cause acts as the catalogue has it.
 _FORMS = {"the catalogue's form": True, "another form": False}
 
-TieCheck = Callable[[Record], float]
+TieCheck = Callable[[Record], Tie]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -87,6 +88,8 @@ class Scores:
         Whether the answers tell what each of two causes shows where the other is at work.
     explained
         How many of those that are ``explained`` name all that was at work and nothing else.
+    tied_by_effect
+        How many of the true ties of one effect are of its effect in the catalogue's form, and not of its own form.
     both_or_tied
         Of how many with two effects both are named, or one in a true tie with what is named in its place.
     reliability
@@ -122,6 +125,7 @@ class Scores:
     verdicts: Mapping[str, Mapping[str, int]]
     beside: bool
     explained: Share
+    tied_by_effect: int
     both_or_tied: Share
     reliability: Mapping[str, tuple[float, float, int]]
     calibration_error: float | None
@@ -189,7 +193,8 @@ def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores
     kinds = {kind: [r for r in records if r.answer.kind == kind] for kind in ("none", "one", "two", "outside")}
     clear = [r for r in kinds["one"] if r.answer.strength_sigma >= CLEAR]
     first = [_named_first(r) for r in clear]
-    tied = [hit or _is_tie(r, tie) for hit, r in zip(first, clear, strict=True)]
+    ties = [None if hit else _true_tie(r, tie) for hit, r in zip(first, clear, strict=True)]
+    tied = [hit or found is not None for hit, found in zip(first, ties, strict=True)]
     reliability, calibration_error = _calibration(records)
     coverage = _coverage(records)
     covered = together(coverage.values())
@@ -246,7 +251,8 @@ def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores
         },
         verdicts={kind: _tally(r.verdict for r in of_kind) for kind, of_kind in kinds.items()},
         beside=any(cause.beside_sigma is not None for record in records for cause in record.answer.effects),
-        both_or_tied=share_of([_both_named(r) or _is_tie(r, tie) for r in kinds["two"]]),
+        tied_by_effect=sum(found is not None and found.world >= TIE_SIGMA for found in ties),
+        both_or_tied=share_of([_both_named(r) or _true_tie(r, tie) is not None for r in kinds["two"]]),
         explained=share_of([set(r.named) == set(r.truth) for r in records if r.verdict == "explained"]),
         reliability=reliability,
         calibration_error=calibration_error,
@@ -284,24 +290,25 @@ def _both_named(record: Record) -> bool:
     return set(record.truth) <= set(record.named)
 
 
-def _is_tie(record: Record, tie: TieCheck) -> bool:
-    """Return whether the diagnosis says itself that it cannot tell, and simulation bears it out.
+def _true_tie(record: Record, tie: TieCheck) -> Tie | None:
+    """Return the tie where the diagnosis says itself that it cannot tell, and simulation bears it out.
 
     Of one effect the first that is named is in its place, of two the one that was not at work.
     """
     if record.diagnosis is None or not record.named:
-        return False
+        return None
     effects = record.diagnosis["effects"]
     if len(record.truth) == 1:
         missed, instead = set(record.truth), effects[:1]
     else:
         missed, instead = set(record.truth) - set(record.named), [e for e in effects if e["name"] not in record.truth]
-    if len(missed) != 1 or len(instead) != 1:
-        return False
-    return missed <= set(instead[0].get("confounded_with", ())) and tie(record) < TIE_SIGMA
+    if len(missed) != 1 or len(instead) != 1 or not missed <= set(instead[0].get("confounded_with", ())):
+        return None
+    found = tie(record)
+    return found if min(found) < TIE_SIGMA else None
 
 
-def _tie_sigma(folder: Path, record: Record) -> float:
+def _tie_sigma(folder: Path, record: Record) -> Tie:
     assert record.diagnosis is not None
     truth = [law_of(effect_of(e.name, e.parameters), e.form, e.form_seed) for e in record.answer.effects]
     try:
@@ -310,9 +317,13 @@ def _tie_sigma(folder: Path, record: Record) -> float:
             for e in record.diagnosis["effects"]
         ]
     except TumblersError:
-        return inf
+        return Tie(inf)
     # Estimates follow the world, whose numbers are off from the nominal ones: the truth is seen there.
-    return difference_sigma(folder, truth, chosen, Jitter.of_table(record.answer.jitter))
+    world = difference_sigma(folder, truth, chosen, Jitter.of_table(record.answer.jitter))
+    if world < TIE_SIGMA or len(record.answer.effects) > 1 or record.same_form:
+        return Tie(world)
+    (cause,) = record.answer.effects
+    return Tie(world, nearest_sigma(folder, effect_of(cause.name, cause.parameters), chosen))
 
 
 def _time(repeated: Sequence[Repeated]) -> Criterion:

@@ -1,4 +1,10 @@
-"""Whether two explanations foretell the same observations: shown by simulation."""
+"""Whether two explanations foretell the same observations: shown by simulation.
+
+Of a truth that acts in another form than the catalogue's two things can be asked: whether what was named shows what it
+shows, to which no effect of the catalogue may come near, the right one no more than another; and whether its effect in
+the catalogue's form shows what was named, in some size. Where that is so, the two effects are tied, whatever the form
+shows beside.
+"""
 
 from __future__ import annotations
 
@@ -6,23 +12,43 @@ from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from math import inf
 from os import PathLike
+from typing import NamedTuple
 
 import numpy as np
+from scipy.optimize import minimize_scalar
 
 from ..dataset import Dataset, LabTrial, load
 from ..effects.base import Effect
 from ..effects.catalogue import get
 from ..errors import InputError, TumblersError, show
+from .forms import scaled
 from .jitter import Jitter
 from .lab import Lab, Plan
-from .law import Law
+from .law import EffectLaw, Law
 from .strength import strength
 from .world import Scene, watch
 
-__all__ = ["difference_sigma", "effect_of"]
+__all__ = ["Tie", "difference_sigma", "effect_of", "nearest_sigma"]
 
 _STEP_S = 1.4e-4
 _FRAMES_PER_SECOND = 60.0
+# Sizes of an effect, over its true one, among which the nearest to another is sought, and how closely.
+_SIZES, _SIZED = (0.5, 1.5), 0.01
+
+
+class Tie(NamedTuple):
+    """By how many sigma what was named differs from the truth.
+
+    Attributes
+    ----------
+    world
+        From the truth in its own form.
+    effect
+        From its effect in the catalogue's form, in the size that comes nearest; infinite where that was not asked.
+    """
+
+    world: float
+    effect: float = inf
 
 
 def effect_of(name: str, parameters: Mapping[str, float]) -> Effect:
@@ -78,6 +104,28 @@ def difference_sigma(
         return strength(lab, _scenes(lab, first, jitter or nominal), _scenes(lab, second, nominal), moved).sigma
     except (ArithmeticError, TumblersError):
         return inf
+
+
+def nearest_sigma(dataset: Dataset | str | PathLike[str], effect: Effect, chosen: Sequence[Law]) -> float:
+    """Return by how many sigma an effect differs from an explanation in the size in which it comes nearest.
+
+    Parameters
+    ----------
+    dataset
+        The dataset, or its folder.
+    effect
+        In its true size; what says where or how it acts stays.
+    chosen
+        The laws of the explanation.
+    """
+    data = dataset if isinstance(dataset, Dataset) else load(dataset)
+    found = minimize_scalar(
+        lambda size: difference_sigma(data, [EffectLaw(scaled(effect, size))], chosen),
+        bounds=_SIZES,
+        method="bounded",
+        options={"xatol": _SIZED},
+    )
+    return float(found.fun)
 
 
 def _scenes(lab: Lab, laws: Sequence[Law], jitter: Jitter) -> list[Scene]:
