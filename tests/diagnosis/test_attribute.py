@@ -54,7 +54,12 @@ def made(total: float, *names: str, settled: bool = False) -> Contender:
 def test_what_leads_by_the_noise_around_another_is_first_held_against_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
     # Where the best leaves a gap, so far behind it a single effect is likelier than two.
     nominal, pair, idle = made(9900.0), made(5000.0, "a", "b", settled=True), made(5400.0, "c")
-    comparison = SimpleNamespace(alike=8.0, weighed=(1000.0,), simulator=SimpleNamespace(resolves=lambda _: True))
+    comparison = SimpleNamespace(
+        alike=8.0,
+        weighed=(1000.0,),
+        independent=lambda dispersion: 1000.0 / dispersion,
+        simulator=SimpleNamespace(resolves=lambda _: True),
+    )
     held: list[tuple[str, ...]] = []
 
     def by_itself(_: object, contender: Contender, evaluations: int) -> Contender:

@@ -289,6 +289,7 @@ def _ranked(
 ) -> tuple[list[Contender], float]:
     alike = comparison.alike
     dispersion = alike * max(1.0, min(contender.cost for contender in contenders) / sum(comparison.weighed))
+    numbers = comparison.independent(dispersion)
     # One effect alone on the list would be likelier than none before anything is seen, and lead without doing anything.
     listed = max(len(effects), 2)
     prior = {
@@ -303,7 +304,7 @@ def _ranked(
         evidence = likelihood + prior[len(c.names)]
         evidence -= _PER_PLACE * sum(place[name] for name in c.names)
         if c.fit is not None:
-            evidence += log_occam(c.fit, dispersion)
+            evidence += log_occam(c.fit, dispersion, numbers)
         scored.append((evidence, replace(c, log_likelihood=likelihood)))
     # Where nothing is likelier by as much, what does nothing would lead.
     nominal = next(c for _, c in scored if not c.names)
