@@ -20,7 +20,7 @@ Floats = NDArray[np.float64]
 # Points that are tried (of one parameter, of more): some evenly over the range, and as many in each decade of their
 # distance from neutral, or from where two effects are, over so many decades. From the best few of them these shares of
 # the trials' time are fitted one after another, the best alone after the first, in so many trial points; then all.
-_EVEN, _BY_DECADE, _DECADES = (8, 32), (16, 64), 1.7
+_EVEN, _BY_DECADE, _DECADES = (32, 32), (32, 64), 1.7
 _BEST, _STAGES, _STAGE_POINTS, _LAST_POINTS = 3, (0.25, 0.5), 4, 6
 # Of more parameters than this, points over the range tell nothing: from where it is and from the close starts, these
 # shares are fitted one after another, each from the best so many of before, then all from the best of these. Over a

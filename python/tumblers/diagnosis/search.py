@@ -108,6 +108,8 @@ class Search:
         singles = settled(self.fitter, singles, self.tell, OWN, MOST_OWN)
         if singles[0].total > nominal.total - self.worth:
             return concluded(self.fitter, nominal, singles, self.tell)
+        # What moves little near neutral may do much far away, and the same as what leads.
+        singles = settled(self.fitter, self._elsewhere(singles, ()), self.tell)
         singles = all_shaken(self.fitter, singles, self.seed, self.tell)
         made = self._with_shaken_pair(singles, self.pairing.found(singles, strong=False))
         return concluded(self.fitter, nominal, made, self.tell)
