@@ -83,6 +83,7 @@ def test_what_may_be_named_is_fitted_as_far_though_pairs_fit_better(monkeypatch:
         fitted.append(contender.names)
         return contender
 
+    monkeypatch.setattr("tumblers.diagnosis.conclusion._PAIRS_EQUALLY_FAR", 2)
     monkeypatch.setattr("tumblers.diagnosis.conclusion.as_far", noted)
     monkeypatch.setattr("tumblers.diagnosis.conclusion.nested", lambda _fitter, single, _pairs: single)
     made = _equally_far(fitter, [*pairs, *far_off, alone], quiet)
@@ -105,13 +106,33 @@ def _tilt_and_gradient() -> tuple[Fitter, Contender, Contender]:
 
 def test_what_ended_beside_its_valley_is_fitted_from_where_it_does_what_the_best_does() -> None:
     fitter, best, stuck = _tilt_and_gradient()
-    found = _from_counterparts(fitter, stuck, best)
+    assert stuck.fit is not None
+    found = _from_counterparts(fitter, stuck, best, [stuck.fit.hypothesis])
     assert stuck.total > best.total + 100.0
     assert found.total < best.total + fitter.comparison.objective_of(CLEAR)
     (gradient,) = found.effects
     assert isinstance(gradient, StrayFieldGradient)
     # The noise leaves it that much.
     assert gradient.gradient_T_per_m[1] == pytest.approx(0.1, rel=0.15)
+
+
+def test_of_a_pair_the_second_is_fitted_from_where_it_does_what_that_of_the_best_pair_does() -> None:
+    truth = (ViscousDrag(viscosity_Pa_s=2e-3), StrayFieldGradient(gradient_T_per_m=(0.0, 0.1, 0.0)))
+    dataset = measure(plan(PLANS[:3]), truth, seed=3)
+    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
+    drag, tilt, gradient = each = Search(fitter, [ViscousDrag, SubstrateTilt, StrayFieldGradient], quiet, 0).possible
+    (viscosity,) = (np.array(ViscousDrag.to_fit((2e-3,))) - drag.neutral) / drag.scale
+    best = settled_at(fitter, drag + tilt, np.array([viscosity, 0.0, -0.67]), evaluations=6)
+    # The same pair in another order, its second where a search may leave it.
+    stuck = settled_at(fitter, gradient + drag, np.array([0.0, 0.4, -0.3, 0.0, viscosity]))
+    clear = fitter.comparison.objective_of(CLEAR)
+    assert stuck.total > best.total + 2.0 * clear
+    found = _from_counterparts(fitter, stuck, best, each)
+    assert found.total < best.total + clear
+    assert set(found.names) == set(stuck.names)
+    # What shares no effect with the best is left where it is.
+    alone = settled_at(fitter, gradient, np.array([0.0, 0.4, -0.3, 0.0]))
+    assert _from_counterparts(fitter, alone, best, each) is alone
 
 
 def test_the_last_fits_start_from_where_the_best_of_all_is(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -124,7 +145,7 @@ def test_the_last_fits_start_from_where_the_best_of_all_is(monkeypatch: pytest.M
     pair = replace(pair, cost=pair.cost + worse.total - pair.total - 5.0)
     asked = []
 
-    def noted(_fitter: Fitter, contender: Contender, best: Contender) -> Contender:
+    def noted(_fitter: Fitter, contender: Contender, best: Contender, _each: object) -> Contender:
         asked.append((contender, best))
         return contender
 
@@ -150,7 +171,7 @@ def test_a_pair_leads_where_its_second_effect_adds_what_it_must(
     pair = replace(pair, cost=pair.cost + tilt.total - pair.total - ahead)
     monkeypatch.setattr("tumblers.diagnosis.conclusion.as_far", lambda _fitter, contender, _alike: contender)
     monkeypatch.setattr("tumblers.diagnosis.conclusion.nested", lambda _fitter, single, _pairs: single)
-    monkeypatch.setattr("tumblers.diagnosis.conclusion._from_counterparts", lambda _fitter, other, _best: other)
+    monkeypatch.setattr("tumblers.diagnosis.conclusion._from_counterparts", lambda _fitter, other, _best, _each: other)
     found = _equally_far(fitter, [pair, tilt, gradient], quiet)
     assert found[0].names == (pair.names if leads else tilt.names)
 

@@ -8,22 +8,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from ..progress import OnPhase
 from .contender import Contender, likeliest, of_nominal, parsimonious_total
 from .counterpart import as_good
 from .fitter import Fitter
+from .hypothesis import Hypothesis
 from .own_noise import MOST_OWN, OWN, again, against_the_best, by_itself, each_by_itself, settled, settled_at
 from .pairs import AS_GOOD, nested
 from .sparse import as_far
+from .thresholds import CLEAR
 
 __all__ = ["OPEN", "concluded", "in_steps_of", "resolved"]
 
 # What is less than about e^12 behind the best, or as good by `AS_GOOD`, is fitted as far, so many single effects and
 # pairs at most: a total moves by some e^3 with the place around which its noise is measured, and by more with where a
 # fit stopped.
-OPEN, _EQUALLY_FAR, _PAIRS_EQUALLY_FAR = 12.0, 3, 2
+OPEN, _EQUALLY_FAR, _PAIRS_EQUALLY_FAR = 12.0, 3, 4
 
 
 def in_steps_of(fitter: Fitter, leader: Contender, contenders: Sequence[Contender], tell: OnPhase) -> list[Contender]:
@@ -94,45 +94,76 @@ def resolved(
 
 def _equally_far(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase) -> list[Contender]:
     """Fit what may be as good as the best as far as that, without what it does not need, and from where the best is."""
-    alike, made = fitter.comparison.alike, list(contenders)
-    scores = [parsimonious_total(c, fitter.comparison) for c in made]
-    order = np.argsort(scores, kind="stable").tolist()
-    best, open_to = made[order[0]], scores[order[0]] + fitter.comparison.objective_of(OPEN)
-    # All against one noise: what does as the best does may have stopped beside its valley.
-    fitter.take_likeliest_noise(best.effects)
-    costs = [fitter.again(c.fit).cost + c.step_credit for c in made if c.fit is not None]
-    here = costs[order[0]]
-    worst = here + AS_GOOD * max(fitter.nominal()[1] - here, 0.0)
-    explaining = [len(c.names) <= len(best.names) and cost < worst for c, cost in zip(made, costs, strict=True)]
-    near = [k for k in order if scores[k] < open_to or explaining[k]]
-    if len(near) == 1:
-        return [made[k] for k in order]
-    # Pairs fit better, and must not take the places of what may be named instead of them; nor must what another's noise
-    # flatters.
-    pairs = [k for k in near if len(made[k].names) > 1][:_PAIRS_EQUALLY_FAR]
-    singles = sorted((k for k in near if len(made[k].names) == 1), key=lambda k: (k != order[0], costs[k]))
-    singles = singles[:_EQUALLY_FAR]
+    comparison = fitter.comparison
+    made = sorted(contenders, key=lambda contender: parsimonious_total(contender, comparison))
+    best, (pairs, singles) = made[0], _near_the_first(fitter, made)
+    if not pairs and not singles:
+        return made
     for n, k in enumerate([*pairs, *singles]):
         tell("fitting those near the best as far", n, len(pairs) + len(singles))
         if k in singles:
             alone = made[k] if made[k].settled else by_itself(fitter, made[k], evaluations=1)
             made[k] = nested(fitter, alone, [c for c in made if len(c.names) > 1])
-        made[k] = as_far(fitter, made[k], alike)
-    singles.sort(key=lambda k: made[k].total)
-    for n, k in enumerate(singles[1:]):
-        tell("from where the best is", n, len(singles) - 1)
-        made[k] = _from_counterparts(fitter, made[k], made[singles[0]])
+        made[k] = as_far(fitter, made[k], comparison.alike)
+    each = [c.fit.hypothesis for c in made if c.fit is not None and len(c.names) == 1]
+    pairs, singles = (sorted(those, key=lambda k: made[k].total) for those in (pairs, singles))
+    behind = [(k, singles[0]) for k in singles[1:]]
+    # Where one effect leads, what others do beside it is not concluded from; and a pair that is as good is as far.
+    if len(best.names) > 1:
+        clear = made[pairs[0]].total + comparison.objective_of(CLEAR)
+        behind += [(k, pairs[0]) for k in pairs[1:] if made[k].total > clear]
+    for n, (k, leading) in enumerate(behind):
+        tell("from where the best is", n, len(behind))
+        made[k] = _from_counterparts(fitter, made[k], made[leading], each)
     # A pair that adds less than a second effect must neither leads nor lends its noise: that would favour its own parts
     # before others that do the same.
-    return sorted(made, key=lambda contender: parsimonious_total(contender, fitter.comparison))
+    return sorted(made, key=lambda contender: parsimonious_total(contender, comparison))
 
 
-def _from_counterparts(fitter: Fitter, contender: Contender, best: Contender) -> Contender:
-    """Fit an effect also from where it does what the best one does, and return what is likelier."""
-    assert contender.fit is not None
+def _near_the_first(fitter: Fitter, contenders: Sequence[Contender]) -> tuple[list[int], list[int]]:
+    """Return the places of pairs and of single effects that may be as good as the first; none where it is alone.
+
+    Leaves the noise around the first.
+    """
+    comparison, best = fitter.comparison, contenders[0]
+    scores = [parsimonious_total(c, comparison) for c in contenders]
+    open_to = scores[0] + comparison.objective_of(OPEN)
+    # All against one noise: what does as the best does may have stopped beside its valley.
+    fitter.take_likeliest_noise(best.effects)
+    costs = [fitter.again(c.fit).cost + c.step_credit for c in contenders if c.fit is not None]
+    worst = costs[0] + AS_GOOD * max(fitter.nominal()[1] - costs[0], 0.0)
+    near = [
+        k
+        for k, (contender, cost) in enumerate(zip(contenders, costs, strict=True))
+        if scores[k] < open_to or (len(contender.names) <= len(best.names) and cost < worst)
+    ]
+    if len(near) == 1:
+        return [], []
+    # Pairs fit better, and must not take the places of what may be named instead of them; nor must what another's noise
+    # flatters.
+    pairs = [k for k in near if len(contenders[k].names) > 1]
+    singles = sorted((k for k in near if len(contenders[k].names) == 1), key=lambda k: (k != 0, costs[k]))
+    return pairs[:_PAIRS_EQUALLY_FAR], singles[:_EQUALLY_FAR]
+
+
+def _from_counterparts(fitter: Fitter, contender: Contender, best: Contender, each: Sequence[Hypothesis]) -> Contender:
+    """Fit what shares all effects but one with the best also from where it does the same, and return what is likelier.
+
+    Parameters
+    ----------
+    fitter
+        Of the dataset.
+    contender, best
+        As many effects each.
+    each
+        Effects by themselves.
+    """
     assert best.fit is not None
-    (kind,) = best.fit.hypothesis.kinds
-    for c in as_good(fitter, best, kind, [contender.fit.hypothesis]):
+    lacks = [kind for kind in best.fit.hypothesis.kinds if kind.name not in contender.names]
+    if len(lacks) != 1:
+        return contender
+    mine = [hypothesis for hypothesis in each if hypothesis.names[0] in contender.names]
+    for c in as_good(fitter, best, lacks[0], mine):
         from_there = as_far(fitter, settled_at(fitter, c.hypothesis, c.point), fitter.comparison.alike)
         contender = likeliest([contender, from_there])
     return contender
