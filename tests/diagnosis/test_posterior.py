@@ -14,7 +14,7 @@ from tumblers.effects.friction_coefficient import FrictionCoefficient
 
 from .lab import NOTHING, coarse_lab
 
-DISPERSION = 2.0
+DISPERSION, NUMBERS = 2.0, 350.0
 
 
 def fit_at(point: list[float]) -> Fit:
@@ -26,7 +26,7 @@ def fit_at(point: list[float]) -> Fit:
 
 def test_what_nothing_asks_for_is_neutral_and_the_rest_makes_up_for_it() -> None:
     fit = fit_at([0.2, 0.03])
-    hypothesis, middle, covariance = _needed(fit, DISPERSION)
+    hypothesis, middle, covariance = _needed(fit, DISPERSION, NUMBERS)
     assert hypothesis.free == 1
     assert middle[1] == 0.0
     information = fit.information(DISPERSION)
@@ -42,7 +42,7 @@ def test_what_nothing_asks_for_is_neutral_and_the_rest_makes_up_for_it() -> None
 
 def test_what_the_data_ask_for_stays() -> None:
     fit = fit_at([0.2, 0.6])
-    hypothesis, middle, covariance = _needed(fit, DISPERSION)
+    hypothesis, middle, covariance = _needed(fit, DISPERSION, NUMBERS)
     assert hypothesis.free == 2
     assert_allclose(middle, fit.point, rtol=1e-12)
     assert_allclose(covariance, fit.covariance(DISPERSION), rtol=1e-10)

@@ -64,7 +64,9 @@ def samples(
     if fit is None:
         return ((),)
     rng = np.random.default_rng(seed)
-    hypothesis, middle, covariance = _needed(fitter, fit, attribution.dispersion)
+    hypothesis, middle, covariance = _needed(
+        fit, attribution.dispersion, fitter.comparison.independent(attribution.dispersion)
+    )
     free = hypothesis.high > hypothesis.low
     wide = [
         (0.5, middle[free], covariance),
@@ -92,9 +94,9 @@ def samples(
     return tuple(hypothesis.effects(points[k]) for k in drawn)
 
 
-def _needed(fitter: Fitter, fit: Fit, dispersion: float) -> tuple[Hypothesis, Floats, Floats]:
+def _needed(fit: Fit, dispersion: float, numbers: float) -> tuple[Hypothesis, Floats, Floats]:
     """Return the hypothesis without what is seldom needed, and its Gaussian; the covariance of what has a range."""
-    neutral = seldom_needed(fit, dispersion, fitter.comparison.independent(dispersion))
+    neutral = seldom_needed(fit, dispersion, numbers)
     hypothesis = fit.hypothesis.held(neutral)
     free = hypothesis.high > hypothesis.low
     information = fit.information(dispersion)
