@@ -16,7 +16,7 @@ from tumblers.blind.layout import STEADY_SIGMA
 from tumblers.blind.page import page_of, print_scores
 from tumblers.blind.records import Record, read_records
 from tumblers.blind.repeated import Repeated
-from tumblers.blind.score import Scores, score_records
+from tumblers.blind.score import Scores, _tie_sigma, score_records
 from tumblers.blind.share import Share
 from tumblers.blind.ties import Tie, difference_sigma, effect_of, nearest_sigma
 from tumblers.dataset import Dataset, LabTrial, Outcome, Sensor
@@ -235,6 +235,32 @@ def test_a_tie_that_simulation_does_not_bear_out_does_not_count() -> None:
     assert value(scored(tie_sigma=1.5), words) == 0.75
 
 
+@pytest.mark.parametrize(
+    ("forms", "world", "expected"),
+    [
+        (("curved",), 2.7, Tie(2.7, 0.1)),
+        # The truth itself bears it out; it has the catalogue's form; of two effects it is not asked.
+        (("curved",), 0.9, Tie(0.9)),
+        (("catalogue",), 2.7, Tie(2.7)),
+        (("curved", "catalogue"), 2.7, Tie(2.7)),
+    ],
+)
+def test_a_truth_of_one_effect_in_another_form_is_tied_by_its_effect_as_well(
+    forms: tuple[str, ...], world: float, expected: Tie, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tumblers.blind.score.difference_sigma", lambda *_: world)
+    monkeypatch.setattr("tumblers.blind.score.nearest_sigma", lambda *_: 0.1)
+    causes = ("substrate_tilt", "friction_coefficient")
+    numbers = ({"slope_y_deg": 3.0}, {"factor": 0.8})
+    truth = answer("one", *zip(causes, forms, numbers, strict=False))
+    truth = replace(
+        truth, effects=tuple(replace(cause, form_seed=3) for cause in truth.effects), jitter=Jitter().table()
+    )
+    pulled = ("stray_field_gradient", {"gradient_T_per_m[1]": (0.02, 0.01, 0.03)})
+    wrong = record(0, truth, said("explained", pulled, ties=("substrate_tilt",)))
+    assert _tie_sigma(Path(), wrong) == expected
+
+
 def test_a_tie_of_effects_counts_whatever_the_form_of_the_truth_shows_beside() -> None:
     words = "one effect of 3 sigma or more: named first or truly tied"
     truth = answer("one", TILT)
@@ -447,7 +473,11 @@ def test_explanations_that_foretell_the_same_do_not_differ() -> None:
     assert difference_sigma(data, soft, [law_of(weak, "partly_soft", 5)]) == 0.0
     assert difference_sigma(data, soft, [EffectLaw(weak)]) > 0.1
     # What its effect shows, in the size that comes nearest, is the same as what a magnet shows that is as weak.
-    assert nearest_sigma(data, effect_of("magnetization_strength", {"factor": 0.5}), [EffectLaw(weak)]) < 0.01
+    stronger = effect_of("magnetization_strength", {"factor": 0.5})
+    assert difference_sigma(data, [EffectLaw(stronger)], [EffectLaw(weak)]) > 0.03
+    assert nearest_sigma(data, stronger, [EffectLaw(weak)]) < 0.01
+    # In its true size too, where a search between half of it and one and a half stops short of that.
+    assert nearest_sigma(data, weak, [EffectLaw(weak)]) == 0.0
     assert nearest_sigma(data, effect_of("magnetization_strength", {"factor": 0.9}), longer) > 3.0
     # A force that pulls it off the substrate cannot be compared.
     lifted = [EffectLaw(effect_of("electrostatic_force", {"added_force_N": -1.0}))]

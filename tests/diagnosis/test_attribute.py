@@ -56,8 +56,7 @@ def test_what_leads_by_the_noise_around_another_is_first_held_against_its_own(mo
     nominal, pair, idle = made(9900.0), made(5000.0, "a", "b", settled=True), made(5400.0, "c")
     comparison = SimpleNamespace(
         alike=8.0,
-        weighed=(1000.0,),
-        independent=lambda dispersion: 1000.0 / dispersion,
+        independent=1000.0 / 8.0,
         simulator=SimpleNamespace(resolves=lambda _: True),
     )
     held: list[tuple[str, ...]] = []

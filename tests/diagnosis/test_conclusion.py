@@ -104,6 +104,37 @@ def _tilt_and_gradient() -> tuple[Fitter, Contender, Contender]:
     return fitter, best, settled_at(fitter, gradient, np.array([0.0, 0.4, -0.3, 0.0]))
 
 
+@pytest.mark.parametrize("leads", [True, False])
+def test_a_pair_that_is_clearly_behind_is_fitted_from_where_the_best_pair_is(
+    leads: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fitter = coarse_lab(SizeError(length_factor=1.1))
+    kinds = (SizeError, FrictionCoefficient, SubstrateTilt, ViscousDrag)
+    size, *others = Search(fitter, list(kinds), quiet, 0).possible
+    truth = (np.array(SizeError(length_factor=1.1).to_fit((1.1, 1.0))) - size.neutral) / size.scale
+    alone = settled_at(fitter, size, truth)
+    clear = fitter.comparison.objective_of(CLEAR)
+    # The first pair adds what a second effect must, or next to nothing; one is about as good, and one clearly behind.
+    ahead = 2.0 * fitter.comparison.alike * SECOND + 4.0 * clear if leads else 1.0
+    pairs = []
+    for other, behind in zip(others, (0.0, 0.5 * clear, 3.0 * clear), strict=True):
+        pair = settled_at(fitter, size + other, np.concatenate([truth, np.zeros(len(other.neutral))]))
+        pairs.append(replace(pair, cost=pair.cost + alone.total - ahead + behind - pair.total))
+    asked = []
+
+    def noted(_fitter: Fitter, contender: Contender, best: Contender, each: object) -> Contender:
+        asked.append((contender.names, best.names))
+        assert each == [alone.fit.hypothesis] if alone.fit is not None else False
+        return contender
+
+    monkeypatch.setattr("tumblers.diagnosis.conclusion.as_far", lambda _fitter, contender, _alike: contender)
+    monkeypatch.setattr("tumblers.diagnosis.conclusion.nested", lambda _fitter, single, _pairs: single)
+    monkeypatch.setattr("tumblers.diagnosis.conclusion._from_counterparts", noted)
+    made = _equally_far(fitter, [*pairs, alone], quiet)
+    assert made[0].names == (pairs[0].names if leads else alone.names)
+    assert asked == ([(pairs[2].names, pairs[0].names)] if leads else [])
+
+
 def test_what_ended_beside_its_valley_is_fitted_from_where_it_does_what_the_best_does() -> None:
     fitter, best, stuck = _tilt_and_gradient()
     assert stuck.fit is not None

@@ -143,7 +143,7 @@ def test_no_parameter_costs_more_than_one_of_the_numbers_says_of_it(dispersion: 
     assert cost(1e-3, 0.5) == pytest.approx(0.0)
 
 
-def test_what_does_the_same_costs_the_same_whatever_its_range_is() -> None:
+def test_a_number_that_is_known_sharply_costs_the_same_whatever_its_range_is() -> None:
     tilt, rng = hypothesis_of("substrate_tilt"), np.random.default_rng(6)
     # Along either slope alone, known well.
     moves = 200.0 * rng.normal(size=(40, 1))

@@ -67,9 +67,7 @@ def test_what_is_needed_stays() -> None:
     fitter = ready(SubstrateTilt(slope_x_deg=3.0, slope_y_deg=5.0))
     fitted = by_itself(fitter, at(fitter, SubstrateTilt(slope_x_deg=2.5, slope_y_deg=5.5)), POLISH_POINTS)
     assert fitted.fit is not None
-    assert not unneeded(
-        fitted.fit, fitter.comparison.alike, fitter.comparison.independent(fitter.comparison.alike)
-    ).any()
+    assert not unneeded(fitted.fit, fitter.comparison.alike, fitter.comparison.independent).any()
     (tilt,) = as_far(fitter, fitted, fitter.comparison.alike).effects
     assert isinstance(tilt, SubstrateTilt)
     assert min(tilt.slope_x_deg, tilt.slope_y_deg) > 2.0

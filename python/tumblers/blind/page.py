@@ -50,7 +50,8 @@ def page_of(scores: Scores) -> str:
         "tied where the diagnosis itself says that it cannot tell it from the first, and the first's estimate shows "
         "with the lab's "
         f"numbers what the truth, in its own form, shows with the world's, to {TIE_SIGMA:g} sigma, by simulation, "
-        "or where the truth has another form what its effect shows in the catalogue's form, in some size, "
+        "or where a truth of one effect has another form what its effect shows in the catalogue's form, in half to one "
+        "and a half times its size, "
         "after the sensor's tolerances and a standard deviation of each nominal number have taken what they can of the "
         "difference, as they do of a cause's strength.",
         "## What has to hold",

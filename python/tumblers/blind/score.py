@@ -188,7 +188,7 @@ def score_records(records: Sequence[Record], seed: int, tie: TieCheck) -> Scores
     seed
         What the datasets were drawn from.
     tie
-        Returns by how many sigma the truth and the diagnosed effects of a record differ on its trials.
+        Returns by how many sigma what was named in a record differs from the truth on its trials.
     """
     kinds = {kind: [r for r in records if r.answer.kind == kind] for kind in ("none", "one", "two", "outside")}
     clear = [r for r in kinds["one"] if r.answer.strength_sigma >= CLEAR]

@@ -287,9 +287,7 @@ def _seen(fitter: Fitter, contender: Contender, first: bool) -> Contender:
 def _ranked(
     contenders: Sequence[Contender], comparison: Comparison, effects: Sequence[str], nominal_is_right: bool
 ) -> tuple[list[Contender], float]:
-    alike = comparison.alike
-    dispersion = alike * max(1.0, min(contender.cost for contender in contenders) / sum(comparison.weighed))
-    numbers = comparison.independent(dispersion)
+    dispersion = max(comparison.alike, min(contender.cost for contender in contenders) / comparison.independent)
     # One effect alone on the list would be likelier than none before anything is seen, and lead without doing anything.
     listed = max(len(effects), 2)
     prior = {
@@ -304,7 +302,7 @@ def _ranked(
         evidence = likelihood + prior[len(c.names)]
         evidence -= _PER_PLACE * sum(place[name] for name in c.names)
         if c.fit is not None:
-            evidence += log_occam(c.fit, dispersion, numbers)
+            evidence += log_occam(c.fit, dispersion, comparison.independent)
         scored.append((evidence, replace(c, log_likelihood=likelihood)))
     # Where nothing is likelier by as much, what does nothing would lead.
     nominal = next(c for _, c in scored if not c.names)

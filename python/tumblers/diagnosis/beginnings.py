@@ -18,9 +18,10 @@ __all__ = ["MANY", "beginning", "from_beginnings", "from_its_own_beginning", "pr
 Floats = NDArray[np.float64]
 
 # Points that are tried (of one parameter, of more): some evenly over the range, and as many in each decade of their
-# distance from neutral, or from where two effects are, over so many decades. From the best few of them these shares of
+# distance from neutral, or from where two effects are, over so many decades. Of one parameter a valley that is a
+# twentieth of the range wide is to be met. From the best few of them these shares of
 # the trials' time are fitted one after another, the best alone after the first, in so many trial points; then all.
-_EVEN, _BY_DECADE, _DECADES = (32, 32), (32, 64), 1.7
+_EVEN, _BY_DECADE, _DECADES = 32, (32, 64), 1.7
 _BEST, _STAGES, _STAGE_POINTS, _LAST_POINTS = 3, (0.25, 0.5), 4, 6
 # Of more parameters than this, points over the range tell nothing: from where it is and from the close starts, these
 # shares are fitted one after another, each from the best so many of before, then all from the best of these. Over a
@@ -136,7 +137,7 @@ def _sampled(
     low, high = hypothesis.low, hypothesis.high
     more = int(hypothesis.free > 1)
     sobol = qmc.Sobol(1 + len(low), rng=np.random.default_rng(seed))
-    even = low + sobol.random(_EVEN[more])[:, 1:] * (high - low)
+    even = low + sobol.random(_EVEN)[:, 1:] * (high - low)
     drawn = sobol.random(_BY_DECADE[more])
     ways = 2.0 * drawn[:, 1:] - 1.0
     ways *= (10.0 ** (-_DECADES * drawn[:, 0]) / np.max(np.abs(ways), axis=1))[:, None]

@@ -249,15 +249,10 @@ class Comparison:
         """For how many numbers of a track each trial counts in the objective."""
         return tuple(floor.tracked + self.alike * len(floor.outcome_scale) for floor in self.floors)
 
-    def independent(self, dispersion: float) -> float:
-        """Return for how many independent numbers all that was measured counts.
-
-        Parameters
-        ----------
-        dispersion
-            So many count as one.
-        """
-        return sum(self.weighed) / dispersion
+    @property
+    def independent(self) -> float:
+        """For how many independent numbers all that was measured counts: neighbours of a track as one."""
+        return sum(self.weighed) / self.alike
 
     @property
     def sizes(self) -> tuple[int, ...]:

@@ -156,7 +156,7 @@ def _from_counterparts(fitter: Fitter, contender: Contender, best: Contender, ea
     contender, best
         As many effects each.
     each
-        Effects by themselves.
+        Effects by themselves, all of the contender's among them.
     """
     assert best.fit is not None
     lacks = [kind for kind in best.fit.hypothesis.kinds if kind.name not in contender.names]

@@ -374,7 +374,8 @@ def _assumptions(dataset: Dataset, comparison: Comparison, attribution: Attribut
         f"{100.0 * PRIOR[2]:g} % for two; no more than two are tried. A nominal model that fails the predictive test "
         f"counts {REFUSED:g} of that where something is likelier by as much.",
         f"A second effect must add a factor e^{SECOND:g} of evidence: one in another form than ours looks like two.",
-        "Evidence is Laplace's approximation, a parameter at the price of a unit information prior at most.",
+        "Evidence is Laplace's approximation; a parameter costs no more than a unit information prior says, however "
+        "sharply the data know it.",
         "Intervals are 90 % likelihood ratios along the ridge of the posterior, and what multiplies a nominal "
         "number, or adds to a nominal force, is known no better than that.",
     ]

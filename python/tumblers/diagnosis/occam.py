@@ -33,7 +33,8 @@ ln det(σ_u² (C⁻¹)_FF) = Σ ln λ   becomes   Σ ln min(λ, n)
 ```
 
 Of two effects that do the same, the one with the narrower plausible range would lead else, and where motion hops, the
-one whose derivatives happen to be less: how sharply the data know a number says nothing of whether it is at work.
+one whose derivatives happen to be less: how sharply the data know a number says nothing of whether it is at work. What
+the prior says of how far from neutral a number is stays as it is.
 """
 
 from __future__ import annotations
@@ -71,7 +72,7 @@ def log_occam(fit: Fit, dispersion: float, numbers: float) -> float:
     dispersion
         c, how many numbers count as one.
     numbers
-        n, how many were measured that count, each c as one.
+        n, for how many independent numbers all that was measured counts.
     """
     covariance, slope, _ = _posterior(fit, dispersion)
     tempered = 0.5 * (1.0 - 1.0 / dispersion) * float(fit.point @ fit.point) / PRIOR_SIGMA**2

@@ -64,9 +64,7 @@ def samples(
     if fit is None:
         return ((),)
     rng = np.random.default_rng(seed)
-    hypothesis, middle, covariance = _needed(
-        fit, attribution.dispersion, fitter.comparison.independent(attribution.dispersion)
-    )
+    hypothesis, middle, covariance = _needed(fit, attribution.dispersion, fitter.comparison.independent)
     free = hypothesis.high > hypothesis.low
     wide = [
         (0.5, middle[free], covariance),

@@ -252,7 +252,8 @@ class Search:
             wanted = (1.0 - AS_GOOD) * (beginning(self.fitter, contender) - goal)
             if promise(self.fitter, contender, self.seed) > max(self.clear, wanted):
                 other = from_beginnings(self.fitter, contender, self.possible, self.seed)
-                made[k] = by_itself(self.fitter, other, IDLE_POINTS)
+                known = contender if contender.settled else by_itself(self.fitter, contender, evaluations=1)
+                made[k] = likeliest([known, by_itself(self.fitter, other, IDLE_POINTS)])
                 self.fitter.take_likeliest_noise(best.effects)
         return likeliest_first(made)
 

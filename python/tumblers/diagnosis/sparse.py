@@ -45,7 +45,7 @@ def as_far(fitter: Fitter, contender: Contender, alike: float) -> Contender:
     known = contender if contender.settled else by_itself(fitter, contender, evaluations=1)
     assert known.fit is not None
     hypothesis = known.fit.hypothesis
-    those = unneeded(known.fit, alike, fitter.comparison.independent(alike))
+    those = unneeded(known.fit, alike, fitter.comparison.independent)
     less, start = hypothesis.held(those), np.where(those, 0.0, known.point)
     if less.free == 1:
         end = _on_its_line(fitter, less, start, alike)
