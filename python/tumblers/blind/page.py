@@ -12,6 +12,7 @@ from .layout import STEADY_SIGMA
 from .overlap import halves
 from .score import CORES, TIE_SIGMA, Criterion, Scores
 from .share import Share
+from .ties import SIZES
 
 __all__ = ["page_of", "print_scores"]
 
@@ -50,8 +51,8 @@ def page_of(scores: Scores) -> str:
         "tied where the diagnosis itself says that it cannot tell it from the first, and the first's estimate shows "
         "with the lab's "
         f"numbers what the truth, in its own form, shows with the world's, to {TIE_SIGMA:g} sigma, by simulation, "
-        "or where a truth of one effect has another form what its effect shows in the catalogue's form, in half to one "
-        "and a half times its size, "
+        "or where a truth of one effect has another form what its effect shows in the catalogue's form, in "
+        f"{SIZES[0]:g} to {SIZES[1]:g} times its size, "
         "after the sensor's tolerances and a standard deviation of each nominal number have taken what they can of the "
         "difference, as they do of a cause's strength.",
         "## What has to hold",

@@ -28,13 +28,13 @@ from .law import EffectLaw, Law
 from .strength import strength
 from .world import Scene, watch
 
-__all__ = ["Tie", "difference_sigma", "effect_of", "nearest_sigma"]
+__all__ = ["SIZES", "Tie", "difference_sigma", "effect_of", "nearest_sigma"]
 
 _STEP_S = 1.4e-4
 _FRAMES_PER_SECOND = 60.0
-# Sizes of an effect, over its true one, among which the nearest to another is sought, and how closely: what varies in
-# another form is as strong as the catalogue's somewhere in the data, and on the whole not half as strong or as weak.
-_SIZES, _SIZED = (0.5, 1.5), 0.01
+# Sizes of an effect, over its true one, among which the nearest to another is sought, and how closely. A choice: in
+# another form it is as strong as in the catalogue's somewhere in the data.
+SIZES, _SIZED = (0.5, 1.5), 0.01
 
 
 class Tie(NamedTuple):
@@ -117,7 +117,7 @@ def nearest_sigma(dataset: Dataset | str | PathLike[str], effect: Effect, chosen
     dataset
         The dataset, or its folder.
     effect
-        In its true size, of which half to one and a half are tried; what says where or how it acts stays.
+        In its true size, of which the shares between `SIZES` are tried; what says where or how it acts stays.
     chosen
         The laws of the explanation.
     """
@@ -130,7 +130,7 @@ def nearest_sigma(dataset: Dataset | str | PathLike[str], effect: Effect, chosen
             # There is no effect of that size.
             return inf
 
-    found = minimize_scalar(away, bounds=_SIZES, method="bounded", options={"xatol": _SIZED})
+    found = minimize_scalar(away, bounds=SIZES, method="bounded", options={"xatol": _SIZED})
     # Where motion hops there may be several minima, and the true size is the likeliest place of one.
     return min(float(found.fun), away(1.0))
 
