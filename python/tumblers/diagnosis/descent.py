@@ -156,9 +156,34 @@ class Descent:
 
     def fit(self, point: Floats) -> Fit:
         """Return the fit that ends at a point, with the derivatives there."""
-        residual = self.at(point)
-        fitted = np.concatenate([self.weights * residual.over(self.chosen), residual.prior])
-        robust = np.minimum(1.0, self.limits[: len(fitted)] / np.maximum(np.abs(fitted), 1e-12)) ** 0.5
+        fitted, robust = self._fitted(point)
         slopes = self.jacobian(point)[: len(fitted)] * robust[:, None]
         steps = self._moved[point.tobytes()].steps
-        return Fit(self.hypothesis, point, residual, self.cost(point), slopes, steps)
+        return Fit(self.hypothesis, point, self.at(point), self.cost(point), slopes, steps)
+
+    def by_trial(self, fit: Fit) -> tuple[Floats, Floats]:
+        """Return what each trial's differences add to the information and to the slope of half the objective.
+
+        Parameters
+        ----------
+        fit
+            At a point of this descent.
+
+        Returns
+        -------
+        information, slope
+            By trial, shapes (T, p, p) and (T, p); the dispersion is not in them.
+        """
+        fitted, robust = self._fitted(fit.point)
+        ends = np.cumsum([len(fit.residual.trials[i]) for i in self.chosen])[:-1]
+        count = len(fit.residual.over(self.chosen))
+        tables = np.split(fit.jacobian[:count], ends)
+        values = np.split((robust * fitted)[:count], ends)
+        information = np.array([table.T @ table for table in tables])
+        return information, np.array([table.T @ value for table, value in zip(tables, values, strict=True)])
+
+    def _fitted(self, point: Floats) -> tuple[Floats, Floats]:
+        """Return the fitted differences and the nuisances' terms at a point, and the roots of Huber's weights."""
+        residual = self.at(point)
+        fitted = np.concatenate([self.weights * residual.over(self.chosen), residual.prior])
+        return fitted, np.minimum(1.0, self.limits[: len(fitted)] / np.maximum(np.abs(fitted), 1e-12)) ** 0.5

@@ -358,7 +358,8 @@ def _assumptions(dataset: Dataset, comparison: Comparison, attribution: Attribut
         f"The nominal numbers may be off by these standard deviations: {nominal}.",
         "What halving the step changes is part of the noise, around each hypothesis that counts for itself, and in "
         "each trial as much of it as makes the differences likeliest. One that comes near the best, and says the "
-        "same against either's noise, may be held against the best's.",
+        "same against either's noise, may be held against the best's, and what is nearly as good is compared with the "
+        "best by the mean over both.",
         "Data that were themselves computed in a coarse step"
         + ("" if given else " by the formats' own torque scheme")
         + " are no gap: the change to it is fitted in every hypothesis.",
@@ -376,8 +377,9 @@ def _assumptions(dataset: Dataset, comparison: Comparison, attribution: Attribut
         f"A second effect must add a factor e^{SECOND:g} of evidence: one in another form than ours looks like two.",
         "Evidence is Laplace's approximation; a parameter costs no more than a unit information prior says, however "
         "sharply the data know it.",
-        "Intervals are 90 % likelihood ratios along the ridge of the posterior, and what multiplies a nominal "
-        "number, or adds to a nominal force, is known no better than that.",
+        "Intervals are 90 % likelihood ratios along the ridge of the posterior, up to four times as wide where leaving "
+        "out a trial moves a number by more than that, and what multiplies a nominal number, or adds to a nominal "
+        "force, is known no better than that.",
     ]
     if dataset.sensor.tracked_point is None:
         said.append(

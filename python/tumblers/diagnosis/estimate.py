@@ -8,6 +8,9 @@ objective is rough, and what is beyond a small rise may be as good as before it;
 threshold, the way to the step is halved. All of what may move the path counts as noise here, not only what made the
 fit likeliest: that was chosen for leaving least, and would say too little of what is not known.
 
+Where leaving out a trial moves a parameter by more than σ says, σ and what the objective may rise by on the way are of
+that instead (`jackknife`).
+
 What says the same as a nominal number's being off is known no better than that number (`least_deviation`). A nuisance
 has it only where differences are linear in it; where motion is chaotic the fit moves the parameter instead.
 """
@@ -21,9 +24,11 @@ from numpy.typing import NDArray
 
 from .attribute import SIDE, Attribution
 from .contender import Contender
+from .descent import Descent
 from .fit import Fit
 from .fitter import Fitter
 from .hypothesis import Hypothesis
+from .jackknife import widened
 from .result import Interval
 from .tolerated import least_deviation
 
@@ -57,18 +62,24 @@ def intervals(fitter: Fitter, attribution: Attribution, contender: Contender) ->
     comparison = fitter.comparison
     before = comparison.floors
     comparison.take_noise_of(contender.effects)
-    fit = fitter.fit(contender.fit.hypothesis, contender.fit.point, evaluations=1, steps=contender.fit.steps)
-    found = _around(fitter, attribution.dispersion, fit)
+    hypothesis, steps = contender.fit.hypothesis, contender.fit.steps
+    descent = Descent(fitter, hypothesis, contender.fit.point, fitter.trials, share=1.0, steps=steps)
+    fit = descent.fit(descent.start)
+    information, slopes = (part / attribution.dispersion for part in descent.by_trial(fit))
+    gradients = _gradients(hypothesis, fit.point)
+    wider = widened(fit.information(attribution.dispersion), information, slopes, gradients)
+    found = _around(fitter, attribution.dispersion, fit, gradients, wider)
     comparison.floors = before
     return found
 
 
-def _around(fitter: Fitter, dispersion: float, fit: Fit) -> dict[tuple[str, str], Interval]:
+def _around(
+    fitter: Fitter, dispersion: float, fit: Fit, gradients: Floats, wider: Floats
+) -> dict[tuple[str, str], Interval]:
     hypothesis = fit.hypothesis
-    gradients = _gradients(hypothesis, fit.point)
     covariance = fit.covariance(dispersion)
     deviation = np.sqrt(np.maximum(np.einsum("jp,pq,jq->j", gradients, covariance, gradients), 0.0))
-    ridges = gradients @ covariance / np.maximum(deviation, 1e-300)[:, None]
+    ridges = gradients @ covariance * (wider / np.maximum(deviation, 1e-300))[:, None]
     sides = [(j, sign) for j in range(len(fit.point)) if deviation[j] > 0.0 for sign in (-1.0, 1.0)]
 
     def at(side: _Side, way: float) -> Floats:
@@ -76,12 +87,12 @@ def _around(fitter: Fitter, dispersion: float, fit: Fit) -> dict[tuple[str, str]
         return np.asarray(np.clip(fit.point + sign * way * ridges[j], hypothesis.low, hypothesis.high))
 
     def rises(ways: list[tuple[_Side, float]]) -> list[float]:
-        """Return how much the objective rises at some ways along the sides' ridges."""
+        """Return how much the objective rises at some ways along the sides' ridges, by what it may."""
         points = [at(side, way) for side, way in ways]
         residuals = fitter.residuals(hypothesis, points)
         return [
-            (fitter.cost(residual, point) - fit.cost) / dispersion
-            for point, residual in zip(points, residuals, strict=True)
+            (fitter.cost(residual, point) - fit.cost) / (dispersion * wider[side[0]] ** 2)
+            for (side, _), point, residual in zip(ways, points, residuals, strict=True)
         ]
 
     reach = _ends(rises, {side: _whole_way(hypothesis, fit.point, side[1] * ridges[side[0]]) for side in sides})
