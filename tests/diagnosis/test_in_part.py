@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from math import inf
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,10 +15,10 @@ from tumblers.blind.law import Law, State
 from tumblers.blind.outside import AmplifierDropout, FadingMagnet, PhaseJump, StickySpot
 from tumblers.diagnosis.acting import DRIVE, TURN, words_of
 from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.in_part import _best_part, _search, acts_in_part
+from tumblers.diagnosis.in_part import _best_part, _search, _stands_out, acts_in_part
 from tumblers.diagnosis.job import Interlude, Job
 from tumblers.diagnosis.localise import localise
-from tumblers.diagnosis.part_axis import along_y, cycle, from_a_moment
+from tumblers.diagnosis.part_axis import Tried, along_y, cycle, from_a_moment
 from tumblers.diagnosis.part_runs import Runs
 from tumblers.diagnosis.pose import Path
 from tumblers.diagnosis.result import Region
@@ -133,6 +135,30 @@ def test_a_robot_that_is_never_seen_to_leave_a_place_tells_where_it_begins() -> 
     assert found.high is not None
     # No farther than it was seen.
     assert found.high < np.nanmax(y) + 1e-5
+
+
+@pytest.mark.parametrize(
+    ("closes", "left", "moment", "told"),
+    [
+        # A place in which the robot stays, of which much is left: clear of every moment, and not.
+        (True, 400.0, 600.0, True),
+        (True, 400.0, 450.0, False),
+        # Nor is it told where it leaves too much, or is not clear of what acts all along.
+        (True, 700.0, 2000.0, False),
+        (True, 580.0, 2000.0, False),
+        # So little is left that it may as well be a moment.
+        (True, 150.0, 160.0, True),
+        # A moment, which nothing else has to beat.
+        (False, 400.0, 400.0, False),
+    ],
+)
+def test_a_place_in_which_the_robot_stays_leaves_less_where_it_is_not_clear_of_every_moment(
+    closes: bool, left: float, moment: float, told: bool
+) -> None:
+    part = Tried((1e-3, 2e-3), DRIVE, 0.5, is_part=True)
+    axis = SimpleNamespace(closes=closes, passage=lambda _: "stays")
+    runs: Any = SimpleNamespace(axis=axis, known={part: left}, clear=100.0, numbers=1e9)
+    assert _stands_out(runs, part, nothing=1000.0, rest=650.0, moment=moment) == told
 
 
 def test_a_field_that_falls_short_in_a_part_of_the_cycle_drives_less_there() -> None:
