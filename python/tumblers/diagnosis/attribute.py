@@ -7,7 +7,8 @@ ln Z = -(cost + ln det Σ)/(2c) + ln Occam + ln prior,
 c = max(1, cost of the best / numbers that were measured, an outcome as n_c) n_c
 ```
 
-with Σ the noise around each hypothesis, or around the best where it says the same (`own_noise`), and the prior
+with Σ the noise around each hypothesis, or around the best where it says the same (`own_noise`), near the best the
+mean over both (`both_noises`), and the prior
 u ~ N(0, σ_u² 1) on parameters in units of their range. Neighbouring frames share what the model itself gets wrong, so
 that n_c numbers count as one (`Comparison.alike`); and where even the best hypothesis leaves more than noise,
 everything that is concluded is widened by that (a quasi-likelihood; McCullagh and Nelder 1989, 9.2). Outcomes are few
@@ -29,6 +30,7 @@ from scipy.stats import chi2
 from ..effects.base import Effect
 from ..progress import OnPhase
 from ..scenario import Scenario
+from .both_noises import by_both_noises
 from .comparison import Comparison
 from .conclusion import OPEN, in_steps_of
 from .contender import Contender, of_fit, of_nominal
@@ -168,18 +170,22 @@ def attribute(
     search = Search(fitter, kinds, tell, seed)
     contenders = search.contenders()
     resolves = comparison.simulator.resolves
+    compared = False
     while True:
         right = _nominal_is_right(fitter)
         ranked, dispersion = _ranked(contenders, comparison, search.names, right)
         if flattered := _flattered(ranked):
             contenders = _each_by_itself(fitter, ranked, flattered, tell)
             continue
+        if not compared and resolves(ranked[0].effects):
+            contenders, compared = by_both_noises(fitter, ranked, tell), True
+            continue
         # What counts as the nominal model leaves the lead to another, whose steps may be shorter again.
         if right and resolves(ranked[0].effects):
             ranked = _with_tolerated(fitter, ranked, dispersion)
         if resolves(ranked[0].effects):
             break
-        contenders = in_steps_of(fitter, ranked[0], contenders, tell)
+        contenders, compared = in_steps_of(fitter, ranked[0], contenders, tell), False
     return seen_from_the_best(fitter, Attribution(tuple(ranked), dispersion, right))
 
 
