@@ -148,7 +148,8 @@ def test_a_robot_that_is_never_seen_to_leave_a_place_tells_where_it_begins() -> 
         (True, 580.0, 2000.0, False),
         # So little is left that it may as well be a moment.
         (True, 150.0, 160.0, True),
-        # A moment, which nothing else has to beat.
+        # No moment was tried that would be ruled out, or it is the best of them itself.
+        (True, 400.0, -inf, False),
         (False, 400.0, 400.0, False),
     ],
 )

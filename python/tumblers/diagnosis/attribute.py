@@ -175,10 +175,10 @@ def attribute(
         right = _nominal_is_right(fitter)
         ranked, dispersion = _ranked(contenders, comparison, search.names, right)
         if flattered := _flattered(ranked):
-            contenders = _each_by_itself(fitter, ranked, flattered, tell)
+            contenders, compared = _each_by_itself(fitter, ranked, flattered, tell), False
             continue
         if not compared and resolves(ranked[0].effects):
-            contenders, compared = by_both_noises(fitter, ranked, tell), True
+            contenders, compared = by_both_noises(fitter, ranked, dispersion, tell), True
             continue
         # What counts as the nominal model leaves the lead to another, whose steps may be shorter again.
         if right and resolves(ranked[0].effects):

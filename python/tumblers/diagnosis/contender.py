@@ -43,10 +43,10 @@ class Contender:
         Whether its derivatives are of a fit against the noise around itself; not of one that the best's was lent to.
     lent
         Whether the noise is that around the best, and it is near by its own too.
-    set_back
+    offset
         What the total has beside that: so it is behind the best by the mean over both noises (`by_both_noises`).
     log_likelihood
-        What of ln Z the fit makes: minus half the objective there and ln det of its noise, over the dispersion.
+        What of ln Z the fit makes: minus half the total, over the dispersion.
     log_evidence
         ln Z, the prior included.
     probability
@@ -63,7 +63,7 @@ class Contender:
     step_credit: float = 0.0
     settled: bool = False
     lent: bool = False
-    set_back: float = 0.0
+    offset: float = 0.0
     log_likelihood: float = 0.0
     log_evidence: float = 0.0
     probability: float = 0.0
@@ -85,7 +85,7 @@ class Contender:
 
         What is said in ln, as `CLEAR` or `OPEN`, counts as `Comparison.objective_of` has it.
         """
-        return self.cost + self.log_determinant + self.step_credit + self.set_back
+        return self.cost + self.log_determinant + self.step_credit + self.offset
 
     @property
     def effects(self) -> tuple[Effect, ...]:

@@ -17,6 +17,7 @@ from .fit import Fit
 from .hypothesis import PRIOR_SIGMA, Hypothesis
 from .loss import HUBER
 from .objective import Objective
+from .sandwich import Pulls
 
 __all__ = ["Descent"]
 
@@ -161,26 +162,35 @@ class Descent:
         steps = self._moved[point.tobytes()].steps
         return Fit(self.hypothesis, point, self.at(point), self.cost(point), slopes, steps)
 
-    def by_trial(self, fit: Fit) -> tuple[Floats, Floats]:
-        """Return what each trial's differences add to the information and to the slope of half the objective.
+    def pulls(self, fit: Fit, dispersion: float) -> Pulls:
+        """Return what the trials say of a fit.
+
+        The camera's heading and scale and the nominal numbers, which belong to all trials, are of the fit to all.
 
         Parameters
         ----------
         fit
             At a point of this descent.
-
-        Returns
-        -------
-        information, slope
-            By trial, shapes (T, p, p) and (T, p); the dispersion is not in them.
+        dispersion
+            How many numbers count as one.
         """
         fitted, robust = self._fitted(fit.point)
-        ends = np.cumsum([len(fit.residual.trials[i]) for i in self.chosen])[:-1]
-        count = len(fit.residual.over(self.chosen))
-        tables = np.split(fit.jacobian[:count], ends)
-        values = np.split((robust * fitted)[:count], ends)
-        information = np.array([table.T @ table for table in tables])
-        return information, np.array([table.T @ value for table, value in zip(tables, values, strict=True)])
+        values = robust * fitted
+        slope = fit.jacobian.T @ values + fit.point / PRIOR_SIGMA**2
+        ends = np.cumsum([0, *(len(fit.residual.trials[i]) for i in self.chosen)]).tolist()
+        own = fit.residual.local.shape[1]
+        by_trial, slopes = [], []
+        for k, trial in enumerate(self.chosen):
+            nuisances = ends[-1] + own * trial + np.arange(own)
+            rows = np.concatenate([np.arange(ends[k], ends[k + 1]), nuisances])
+            by_trial.append(fit.jacobian[rows].T @ fit.jacobian[rows])
+            slopes.append(fit.jacobian[rows].T @ values[rows])
+        return Pulls(
+            fit.information(dispersion),
+            slope / dispersion,
+            np.array(by_trial) / dispersion,
+            np.array(slopes) / dispersion,
+        )
 
     def _fitted(self, point: Floats) -> tuple[Floats, Floats]:
         """Return the fitted differences and the nuisances' terms at a point, and the roots of Huber's weights."""

@@ -8,8 +8,8 @@ objective is rough, and what is beyond a small rise may be as good as before it;
 threshold, the way to the step is halved. All of what may move the path counts as noise here, not only what made the
 fit likeliest: that was chosen for leaving least, and would say too little of what is not known.
 
-Where leaving out a trial moves a parameter by more than σ says, σ and what the objective may rise by on the way are of
-that instead (`jackknife`).
+Where the trials pull at a parameter by more than σ says, or the fit is farther than σ from where its slope leads, σ and
+what the objective may rise by on the way are of that instead (`sandwich`).
 
 What says the same as a nominal number's being off is known no better than that number (`least_deviation`). A nuisance
 has it only where differences are linear in it; where motion is chaotic the fit moves the parameter instead.
@@ -28,8 +28,8 @@ from .descent import Descent
 from .fit import Fit
 from .fitter import Fitter
 from .hypothesis import Hypothesis
-from .jackknife import widened
 from .result import Interval
+from .sandwich import misfit_factors
 from .tolerated import least_deviation
 
 __all__ = ["intervals"]
@@ -45,6 +45,8 @@ _WAYS, _DOUBLINGS = (0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0), 4
 _HALVINGS = 5
 _IDENTIFIED = 0.5
 _HALF_TURN = 180.0
+# A fit keeps a hair's breadth away from the ends of its ranges: this share of them is nearer.
+_AT_END = 1e-6
 
 
 def intervals(fitter: Fitter, attribution: Attribution, contender: Contender) -> dict[tuple[str, str], Interval]:
@@ -65,21 +67,20 @@ def intervals(fitter: Fitter, attribution: Attribution, contender: Contender) ->
     hypothesis, steps = contender.fit.hypothesis, contender.fit.steps
     descent = Descent(fitter, hypothesis, contender.fit.point, fitter.trials, share=1.0, steps=steps)
     fit = descent.fit(descent.start)
-    information, slopes = (part / attribution.dispersion for part in descent.by_trial(fit))
-    gradients = _gradients(hypothesis, fit.point)
-    wider = widened(fit.information(attribution.dispersion), information, slopes, gradients)
-    found = _around(fitter, attribution.dispersion, fit, gradients, wider)
+    gradients, pulls = _gradients(hypothesis, fit.point), descent.pulls(fit, attribution.dispersion)
+    factors = misfit_factors(pulls, gradients, _pressing(hypothesis, fit.point, pulls.slope))
+    found = _around(fitter, attribution.dispersion, fit, gradients, factors)
     comparison.floors = before
     return found
 
 
 def _around(
-    fitter: Fitter, dispersion: float, fit: Fit, gradients: Floats, wider: Floats
+    fitter: Fitter, dispersion: float, fit: Fit, gradients: Floats, factors: Floats
 ) -> dict[tuple[str, str], Interval]:
     hypothesis = fit.hypothesis
     covariance = fit.covariance(dispersion)
     deviation = np.sqrt(np.maximum(np.einsum("jp,pq,jq->j", gradients, covariance, gradients), 0.0))
-    ridges = gradients @ covariance * (wider / np.maximum(deviation, 1e-300))[:, None]
+    ridges = gradients @ covariance * (factors / np.maximum(deviation, 1e-300))[:, None]
     sides = [(j, sign) for j in range(len(fit.point)) if deviation[j] > 0.0 for sign in (-1.0, 1.0)]
 
     def at(side: _Side, way: float) -> Floats:
@@ -91,7 +92,7 @@ def _around(
         points = [at(side, way) for side, way in ways]
         residuals = fitter.residuals(hypothesis, points)
         return [
-            (fitter.cost(residual, point) - fit.cost) / (dispersion * wider[side[0]] ** 2)
+            (fitter.cost(residual, point) - fit.cost) / (dispersion * factors[side[0]] ** 2)
             for (side, _), point, residual in zip(ways, points, residuals, strict=True)
         ]
 
@@ -165,6 +166,14 @@ def _gradients(hypothesis: Hypothesis, point: Floats) -> Floats:
         way = above if above > -below else below
         slopes[j, j] = (hypothesis.values(point + way * np.eye(len(point))[j]) - hypothesis.values(point))[j] / way
     return slopes
+
+
+def _pressing(hypothesis: Hypothesis, point: Floats, slope: Floats) -> NDArray[np.bool_]:
+    """Return which coordinates are fixed, or at an end of their range beyond which the objective falls, shape (p,)."""
+    near = _AT_END * (hypothesis.high - hypothesis.low)
+    fixed = hypothesis.high <= hypothesis.low
+    down, up = (point <= hypothesis.low + near) & (slope > 0.0), (point >= hypothesis.high - near) & (slope < 0.0)
+    return np.asarray(fixed | down | up)
 
 
 def _whole_way(hypothesis: Hypothesis, point: Floats, direction: Floats) -> float:

@@ -13,8 +13,8 @@ neighbouring numbers count as one, N how many S, each with how many kinds of eff
 over the numbers of the trials where that is more than one. That is, what sets in somewhere is three standard deviations
 clear of what is there all along. A robot that does not leave a place before its track ends, or that may not, may as
 well have met something at a moment, from which on the field drives it by less: there s is less, unless the place is as
-clear of every such moment. A field that is ahead from a moment on is like nothing else. Of the cycle, the way and the
-time each is told that leaves not much more than another.
+clear of every moment, the same in all trials. A field that is ahead from a moment on is like nothing else. Of the
+cycle, the way and the time each is told that leaves not much more than another.
 
 All that is tried runs in the longest steps, but for what was found to act all along.
 
@@ -137,7 +137,7 @@ def _parts(
         least = min(least, _least_part(runs))
     # Whatever axis it is of.
     rest = min([all_along, *(runs.least_rival() for runs in searched)])
-    moment = min((_least_part(runs) for runs in searched if not runs.axis.closes), default=inf)
+    moment = min((_least_part(runs) for runs in searched if not runs.axis.closes), default=-inf)
     told: dict[str, Region] = {}
     # Of two of one axis the one that leaves less.
     for runs in sorted(searched, key=lambda runs: -_least_part(runs)):
@@ -179,10 +179,11 @@ def _stands_out(runs: Runs, best: Tried, nothing: float, rest: float, moment: fl
     nothing, rest
         What the nominal model leaves, and the least that is known of what is no part.
     moment
-        The least that is known of what sets in at a moment, wherever the robot is then.
+        The least that is known of what sets in at a moment that is the same in all trials, wherever the robot is then;
+        -inf where none was tried.
     """
     clear = runs.clear * _wide(runs, best)
-    if runs.axis.closes and runs.known[best] < moment - clear:
+    if runs.known[best] < moment - clear:
         return runs.known[best] < min(rest - clear, _THROUGH * nothing)
     stays = [cost for tried, cost in runs.known.items() if tried.is_part and _may_be_another(runs, tried)]
     enough = _THROUGH if runs.known[best] < min(stays, default=inf) - clear else _STAYS
