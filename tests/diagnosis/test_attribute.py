@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from importlib import import_module
+from math import log
 from types import SimpleNamespace
 from typing import Any
 
@@ -32,6 +33,7 @@ def test_what_leads_once_another_counts_as_the_nominal_model_imposes_its_steps(m
         "_nominal_is_right": lambda _: True,
         "_ranked": lambda made, *_: (made, 1.0),
         "_flattered": lambda _: [],
+        "by_both_noises": lambda _, ranked, *__: ranked,
         # The one that led counts as the nominal model.
         "_with_tolerated": lambda _, made, __: made[::-1],
         "in_steps_of": in_steps_of,
@@ -87,3 +89,58 @@ def test_what_leads_by_the_noise_around_another_is_first_held_against_its_own(mo
     assert attribution._flattered([made(0.0), idle]) == []
     assert attribution._flattered([idle, pair]) == [idle]
     assert attribution._flattered([replace(idle, lent=True), pair]) == []
+
+
+def test_what_is_near_is_compared_by_both_noises_once_it_is_held_as_it_will_be(monkeypatch: pytest.MonkeyPatch) -> None:
+    first, second = made(100.0, "a", settled=True), made(101.0, "b", settled=True)
+    coarse, told = [True], []
+
+    def by_both_noises(
+        _: object, ranked: list[Contender], dispersion: float, __: Callable[..., None]
+    ) -> list[Contender]:
+        assert dispersion == 3.0
+        told.append(("compared", ranked[0].names))
+        return [replace(ranked[0], offset=5.0), *ranked[1:]]
+
+    def flattered(ranked: list[Contender]) -> list[Contender]:
+        # What the comparison has put first is not yet held against its own noise.
+        return [c for c in ranked[:1] if c.names == second.names and c.settled and ("held", c.names) not in told]
+
+    def each_by_itself(_: object, ranked: list[Contender], which: list[Contender], __: object) -> list[Contender]:
+        told.append(("held", which[0].names))
+        return list(ranked)
+
+    def in_steps_of(_: object, leader: Contender, contenders: list[Contender], __: object) -> list[Contender]:
+        told.append(("in steps of", leader.names))
+        coarse[0] = False
+        return [replace(c, offset=0.0) for c in contenders]
+
+    patched: dict[str, Any] = {
+        "Fitter": lambda _: None,
+        "Search": lambda *_: SimpleNamespace(contenders=lambda: [first, second], names=()),
+        "_nominal_is_right": lambda _: False,
+        "_ranked": lambda contenders, *_: (sorted(contenders, key=lambda c: c.total), 3.0),
+        "_flattered": flattered,
+        "_each_by_itself": each_by_itself,
+        "by_both_noises": by_both_noises,
+        "in_steps_of": in_steps_of,
+        "seen_from_the_best": lambda _, found: found,
+    }
+    for name, instead in patched.items():
+        monkeypatch.setattr(attribution, name, instead)
+    comparison: Any = SimpleNamespace(simulator=SimpleNamespace(resolves=lambda _: not coarse[0]))
+    found = attribution.attribute(comparison, [])
+    # In steps that are too long nothing is compared; what is held anew is compared again, and nothing else.
+    assert told == [("in steps of", ("a",)), ("compared", ("a",)), ("held", ("b",)), ("compared", ("b",))]
+    assert [c.offset for c in found.contenders] == [5.0, 5.0]
+
+
+def test_what_is_behind_by_both_noises_is_no_less_beside_the_nominal_model() -> None:
+    nominal, comparison = made(100.0), SimpleNamespace(alike=1.0, independent=1000.0)
+    # Likelier by enough that a nominal model which failed the predictive test is improbable.
+    for offset in (0.0, 4.0):
+        contender = replace(made(90.0, "a", settled=True), offset=offset)
+        ranked, _ = attribution._ranked([nominal, contender], comparison, ("a",), False)
+        nominal_evidence = next(c.log_evidence for c in ranked if not c.names)
+        expected = -50.0 + log(attribution.PRIOR[0]) + log(attribution.REFUSED)
+        assert nominal_evidence == pytest.approx(expected)

@@ -52,17 +52,17 @@ def test_it_is_about_one_where_the_model_is_right_however_the_trials_share_what_
     tables, found, squares = [np.full((30, 1), np.sqrt(400.0 / 30.0 * share)) for share in shares], [], []
     for seed in range(1000):
         rng = np.random.default_rng(seed)
-        known = pulls(tables, [rng.normal(size=30) - table[:, 0] * 0.1 for table in tables])
+        known = pulls(tables, [rng.normal(size=30) - table[:, 0] * 0.9 for table in tables])
         found.append(misfit_factors(known, np.ones((1, 1)), EVERY[:1])[0])
         # The equation for one coordinate.
         a, rest = known.by_trial[:, 0, 0], 1.0 - known.by_trial[:, 0, 0] / known.information[0, 0]
         apart = known.slopes[:, 0] - a * known.slope[0] / known.information[0, 0]
-        squares.append(float(np.sum(apart**2 / rest) / known.information[0, 0]))
+        squares.append(float(np.sum((apart**2 / rest)[rest > 0.01]) / known.information[0, 0]))
         assert found[-1] == pytest.approx(np.clip(np.sqrt(squares[-1]), 1.0, 4.0), rel=1e-6)
     # As it is at least one, and a sum of so few squares: of three with one on average the mean of what is more is 1.1.
     assert min(found) == 1.0
     assert np.mean(found) < 1.2
-    # Of one trial that knows all nothing can be said.
+    # Of one trial that knows all nothing can be said, wherever its best is.
     informed = sum(share > 0.0 for share in shares) > 1
     assert np.mean(squares) == pytest.approx(1.0 if informed else 0.0, abs=0.1)
 
@@ -108,10 +108,11 @@ def test_it_does_not_depend_on_the_coordinates() -> None:
 def test_what_presses_on_an_end_of_its_range_says_nothing_of_the_others() -> None:
     rng = np.random.default_rng(8)
     tables = [rng.normal(size=(30, 2)) for _ in range(6)]
-    values = [rng.normal(size=30) - 5.0 * table[:, 1] for table in tables]
+    values = [rng.normal(size=30) - 1.3 * table[:, 1] for table in tables]
     known = pulls(tables, values, np.array([0.0, 1.0]))
     pressing = np.array([False, True])
     first, second = misfit_factors(known, np.eye(2), pressing)
+    assert 1.0 < first < 4.0
     alone = pulls([t[:, :1] for t in tables], [v + t[:, 1] for t, v in zip(tables, values, strict=True)], np.zeros(1))
     assert first == pytest.approx(misfit_factors(alone, np.ones((1, 1)), EVERY[:1])[0])
     assert second == 1.0

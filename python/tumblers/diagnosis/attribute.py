@@ -7,13 +7,13 @@ ln Z = -(cost + ln det Σ)/(2c) + ln Occam + ln prior,
 c = max(1, cost of the best / numbers that were measured, an outcome as n_c) n_c
 ```
 
-with Σ the noise around each hypothesis, or around the best where it says the same (`own_noise`), near the best the
-mean over both (`both_noises`), and the prior
-u ~ N(0, σ_u² 1) on parameters in units of their range. Neighbouring frames share what the model itself gets wrong, so
-that n_c numbers count as one (`Comparison.alike`); and where even the best hypothesis leaves more than noise,
-everything that is concluded is widened by that (a quasi-likelihood; McCullagh and Nelder 1989, 9.2). Outcomes are few
-and count each for one. A second effect has to add more than the form of the first may be wrong by, and a small share of
-the probability belongs to all hypotheses alike.
+with Σ the noise around each hypothesis, or around the best where it says the same (`own_noise`), and the prior
+u ~ N(0, σ_u² 1) on parameters in units of their range. Those near the best are then compared by the mean over both
+noises (`both_noises`). Neighbouring frames share what the model itself gets wrong, so that n_c numbers count as one
+(`Comparison.alike`); and where even the best hypothesis leaves more than noise, everything that is concluded is widened
+by that (a quasi-likelihood; McCullagh and Nelder 1989, 9.2). Outcomes are few and count each for one. A second effect
+has to add more than the form of the first may be wrong by, and a small share of the probability belongs to all
+hypotheses alike.
 """
 
 from __future__ import annotations
@@ -310,9 +310,10 @@ def _ranked(
         if c.fit is not None:
             evidence += log_occam(c.fit, dispersion, comparison.independent)
         scored.append((evidence, replace(c, log_likelihood=likelihood)))
-    # Where nothing is likelier by as much, what does nothing would lead.
+    # Where nothing is likelier by as much, what does nothing would lead. Each by itself: what one is behind another by
+    # says nothing of the nominal model.
     nominal = next(c for _, c in scored if not c.names)
-    likeliest = max(c.log_likelihood for _, c in scored)
+    likeliest = max(c.log_likelihood + 0.5 * c.offset / dispersion for _, c in scored)
     if not nominal_is_right and likeliest > nominal.log_likelihood - log(REFUSED):
         scored = [(evidence + (0.0 if c.names else log(REFUSED)), c) for evidence, c in scored]
     top = max(evidence for evidence, _ in scored)

@@ -44,7 +44,8 @@ class Contender:
     lent
         Whether the noise is that around the best, and it is near by its own too.
     offset
-        What the total has beside that: so it is behind the best by the mean over both noises (`by_both_noises`).
+        What the total has beside that: so it is behind the best by the mean over both noises, and as far as before
+        ahead of what is not compared so (`by_both_noises`).
     log_likelihood
         What of ln Z the fit makes: minus half the total, over the dispersion.
     log_evidence

@@ -45,8 +45,8 @@ _WAYS, _DOUBLINGS = (0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0), 4
 _HALVINGS = 5
 _IDENTIFIED = 0.5
 _HALF_TURN = 180.0
-# A fit keeps a hair's breadth away from the ends of its ranges: this share of them is nearer.
-_AT_END = 1e-6
+# Nearer to an end than this share of its range, a coordinate counts as at it: least squares stop short of it.
+_PRESSED = 1e-3
 
 
 def intervals(fitter: Fitter, attribution: Attribution, contender: Contender) -> dict[tuple[str, str], Interval]:
@@ -66,7 +66,7 @@ def intervals(fitter: Fitter, attribution: Attribution, contender: Contender) ->
     comparison.take_noise_of(contender.effects)
     hypothesis, steps = contender.fit.hypothesis, contender.fit.steps
     descent = Descent(fitter, hypothesis, contender.fit.point, fitter.trials, share=1.0, steps=steps)
-    fit = descent.fit(descent.start)
+    fit = descent.fit(descent.end(evaluations=1))
     gradients, pulls = _gradients(hypothesis, fit.point), descent.pulls(fit, attribution.dispersion)
     factors = misfit_factors(pulls, gradients, _pressing(hypothesis, fit.point, pulls.slope))
     found = _around(fitter, attribution.dispersion, fit, gradients, factors)
@@ -170,7 +170,7 @@ def _gradients(hypothesis: Hypothesis, point: Floats) -> Floats:
 
 def _pressing(hypothesis: Hypothesis, point: Floats, slope: Floats) -> NDArray[np.bool_]:
     """Return which coordinates are fixed, or at an end of their range beyond which the objective falls, shape (p,)."""
-    near = _AT_END * (hypothesis.high - hypothesis.low)
+    near = _PRESSED * (hypothesis.high - hypothesis.low)
     fixed = hypothesis.high <= hypothesis.low
     down, up = (point <= hypothesis.low + near) & (slope > 0.0), (point >= hypothesis.high - near) & (slope < 0.0)
     return np.asarray(fixed | down | up)

@@ -12,9 +12,9 @@ moment of the first quarter cycle on, and S any other; what was found to act all
 neighbouring numbers count as one, N how many S, each with how many kinds of effects, are tried first, and c the least C
 over the numbers of the trials where that is more than one. That is, what sets in somewhere is three standard deviations
 clear of what is there all along. A robot that does not leave a place before its track ends, or that may not, may as
-well have met something at a moment, from which on the field drives it by less: there s is less, unless the place is as
-clear of every moment, the same in all trials. A field that is ahead from a moment on is like nothing else. Of the
-cycle, the way and the time each is told that leaves not much more than another.
+well have met something at a moment, from which on the field drives it by less: there s is less, unless several trials
+come into the place and it is as clear of every moment, the same in all of them. A field that is ahead from a moment on
+is like nothing else. Of the cycle, the way and the time each is told that leaves not much more than another.
 
 All that is tried runs in the longest steps, but for what was found to act all along.
 
@@ -179,11 +179,12 @@ def _stands_out(runs: Runs, best: Tried, nothing: float, rest: float, moment: fl
     nothing, rest
         What the nominal model leaves, and the least that is known of what is no part.
     moment
-        The least that is known of what sets in at a moment that is the same in all trials, wherever the robot is then;
-        -inf where none was tried.
+        The least that is known of a field that drives or turns otherwise from a moment on that is the same in all
+        trials, infinite where every such leaves far more than a part does; -inf where none was tried.
     """
     clear = runs.clear * _wide(runs, best)
-    if runs.known[best] < moment - clear:
+    entering = [trial for trial in runs.axis.trials if runs.axis.edges(trial, _ends(best))]
+    if len(entering) > 1 and runs.known[best] < moment - clear:
         return runs.known[best] < min(rest - clear, _THROUGH * nothing)
     stays = [cost for tried, cost in runs.known.items() if tried.is_part and _may_be_another(runs, tried)]
     enough = _THROUGH if runs.known[best] < min(stays, default=inf) - clear else _STAYS

@@ -12,7 +12,9 @@ d_t = A^(-1/2) (1 - M_t)^(-1/2) A^(-1/2) (s_t - A_t A⁻¹G)
 V   = Σ_t d_t d_tᵀ + A⁻¹G (A⁻¹G)ᵀ
 ```
 
-A coordinate that presses on an end of its range is not at a stationary point, and is left out.
+The prior is whole in A, and over the dispersion in G, whose minimum the fit has sought: where the data say little, the
+step is too short by that. A coordinate that presses on an end of its range is not at a stationary point, and is left
+out; of a direction of which one trial alone knows, no other can pull away.
 """
 
 from __future__ import annotations
@@ -26,13 +28,15 @@ __all__ = ["Pulls", "misfit_factors"]
 
 Floats = NDArray[np.float64]
 
+# A trial that knows all but this share of a direction is alone with it.
+_ALONE = 0.01
 # No factor is more: where a step of Newton's is as long as this, nothing is known of where it leads. A choice, made
 # with the answers of 150 datasets known.
 _MOST = 4.0
 
 
 class Pulls(NamedTuple):
-    """What the trials say of a fit, all over the dispersion.
+    """What the trials say of a fit, all over the dispersion but for the prior in A.
 
     Attributes
     ----------
@@ -69,10 +73,9 @@ def misfit_factors(pulls: Pulls, gradients: Floats, pressing: NDArray[np.bool_])
     root = (axes / np.sqrt(value)) @ axes.T
     step = root @ root @ pulls.slope[free]
     leverage, ways = np.linalg.eigh(root @ by_trial @ root)
-    # Its prior keeps each below one.
-    rest = np.sqrt(np.maximum(1.0 - leverage, 1e-12))
+    weight = np.where(1.0 - leverage > _ALONE, np.maximum(1.0 - leverage, _ALONE) ** -0.5, 0.0)
     centred = (pulls.slopes[:, free] - by_trial @ step) @ root
-    moved = np.einsum("tij,tj,tkj,tk->ti", ways, 1.0 / rest, ways, centred) @ root
+    moved = np.einsum("tij,tj,tkj,tk->ti", ways, weight, ways, centred) @ root
     found = np.sum((moved @ gradients.T) ** 2, axis=0) + (gradients @ step) ** 2
     said = np.sum((gradients @ root) ** 2, axis=1)
     return np.asarray(np.clip(np.sqrt(found / np.maximum(said, 1e-300)), 1.0, _MOST), dtype=np.float64)
