@@ -23,7 +23,7 @@ from .own_noise import lead_around
 
 __all__ = ["by_both_noises"]
 
-# What is less than this behind the best by evidence is compared so, so many at most. A choice: in 23 near ties whose
+# What is less than this behind the best by evidence is compared so, so many at most. A choice: in near ties whose
 # truth was known the mean moved what is between two contenders by up to 2.4.
 _NEAR, _MOST = 3.0, 4
 
