@@ -138,29 +138,29 @@ def test_a_robot_that_is_never_seen_to_leave_a_place_tells_where_it_begins() -> 
 
 
 @pytest.mark.parametrize(
-    ("closes", "entering", "left", "moment", "told"),
+    ("entering", "left", "moment", "told"),
     [
         # A place in which the robot stays, of which much is left: clear of every moment, and not.
-        (True, 2, 400.0, 600.0, True),
-        (True, 2, 400.0, 450.0, False),
+        (2, 400.0, 600.0, True),
+        (2, 400.0, 450.0, False),
         # Of one trial a place in which it stays is what sets in at a moment.
-        (True, 1, 400.0, 600.0, False),
+        (1, 400.0, 600.0, False),
         # Nor is it told where it leaves too much, or is not clear of what acts all along.
-        (True, 2, 700.0, 2000.0, False),
-        (True, 2, 580.0, 2000.0, False),
+        (2, 700.0, 2000.0, False),
+        (2, 580.0, 2000.0, False),
         # So little is left that it may as well be a moment.
-        (True, 2, 150.0, 160.0, True),
-        # No moment was tried that would be ruled out, or it is the best of them itself.
-        (True, 2, 400.0, -inf, False),
-        (False, 2, 400.0, 400.0, False),
+        (2, 150.0, 160.0, True),
+        # No moment was tried that would be ruled out, or a moment is the best itself.
+        (2, 400.0, -inf, False),
+        (2, 400.0, 400.0, False),
     ],
 )
 def test_a_place_in_which_the_robot_stays_leaves_less_where_it_is_not_clear_of_every_moment(
-    closes: bool, entering: int, left: float, moment: float, told: bool
+    entering: int, left: float, moment: float, told: bool
 ) -> None:
     part = Tried((1e-3, 2e-3), DRIVE, 0.5, is_part=True)
     axis = SimpleNamespace(
-        closes=closes, passage=lambda _: "stays", trials=range(3), edges=lambda trial, _: (0.5,) * (trial < entering)
+        passage=lambda _: "stays", trials=range(3), edges=lambda trial, _: (0.5,) * (trial < entering)
     )
     runs: Any = SimpleNamespace(axis=axis, known={part: left}, clear=100.0, numbers=1e9)
     assert _stands_out(runs, part, nothing=1000.0, rest=650.0, moment=moment) == told

@@ -184,10 +184,10 @@ def _stands_out(runs: Runs, best: Tried, nothing: float, rest: float, moment: fl
     """
     clear = runs.clear * _wide(runs, best)
     entering = [trial for trial in runs.axis.trials if runs.axis.edges(trial, _ends(best))]
-    if len(entering) > 1 and runs.known[best] < moment - clear:
-        return runs.known[best] < min(rest - clear, _THROUGH * nothing)
+    of_no_moment = len(entering) > 1 and runs.known[best] < moment - clear
     stays = [cost for tried, cost in runs.known.items() if tried.is_part and _may_be_another(runs, tried)]
-    enough = _THROUGH if runs.known[best] < min(stays, default=inf) - clear else _STAYS
+    leaves_it = runs.known[best] < min(stays, default=inf) - clear
+    enough = _THROUGH if leaves_it or of_no_moment else _STAYS
     return runs.known[best] < min(rest - clear, enough * nothing)
 
 
