@@ -15,7 +15,7 @@ from tumblers.diagnosis.descent import Descent
 from tumblers.diagnosis.estimate import _pressing
 from tumblers.diagnosis.fitter import Fitter
 from tumblers.diagnosis.hypothesis import PRIOR_SIGMA, Hypothesis
-from tumblers.diagnosis.sandwich import Pulls, misfit_factors
+from tumblers.diagnosis.sandwich import MOST_FACTOR, Pulls, misfit_factors
 from tumblers.diagnosis.search import Search
 from tumblers.diagnosis.simulator import Simulator
 from tumblers.effects.size_error import SizeError
@@ -58,7 +58,7 @@ def test_it_is_about_one_where_the_model_is_right_however_the_trials_share_what_
         a, rest = known.by_trial[:, 0, 0], 1.0 - known.by_trial[:, 0, 0] / known.information[0, 0]
         apart = known.slopes[:, 0] - a * known.slope[0] / known.information[0, 0]
         squares.append(float(np.sum((apart**2 / rest)[rest > 0.01]) / known.information[0, 0]))
-        assert found[-1] == pytest.approx(np.clip(np.sqrt(squares[-1]), 1.0, 4.0), rel=1e-6)
+        assert found[-1] == pytest.approx(np.clip(np.sqrt(squares[-1]), 1.0, MOST_FACTOR), rel=1e-6)
     # As it is at least one, and a sum of so few squares: of three with one on average the mean of what is more is 1.1.
     assert min(found) == 1.0
     assert np.mean(found) < 1.2
@@ -86,7 +86,7 @@ def test_a_fit_that_stopped_short_is_off_by_as_far_as_its_slope_leads() -> None:
         # Of 200 trials the sum of squares is off by a tenth.
         assert factor(tables, values, at + far * deviation) == pytest.approx(np.sqrt(1.0 + far**2), rel=0.1)
     # No farther than that: nobody knows where it leads.
-    assert factor(tables, values, at + 50.0 * deviation) == 4.0
+    assert factor(tables, values, at + 50.0 * deviation) == MOST_FACTOR
 
 
 def test_it_does_not_depend_on_the_coordinates() -> None:
@@ -101,7 +101,7 @@ def test_it_does_not_depend_on_the_coordinates() -> None:
         back.T @ known.information @ back, back.T @ known.slope, back.T @ known.by_trial @ back, known.slopes @ back
     )
     found = misfit_factors(known, gradients, EVERY)
-    assert np.all((found > 1.05) & (found < 4.0))
+    assert np.all((found > 1.05) & (found < MOST_FACTOR))
     assert_allclose(misfit_factors(other, gradients @ back, EVERY), found, rtol=1e-9)
 
 
@@ -112,7 +112,7 @@ def test_what_presses_on_an_end_of_its_range_says_nothing_of_the_others() -> Non
     known = pulls(tables, values, np.array([0.0, 1.0]))
     pressing = np.array([False, True])
     first, second = misfit_factors(known, np.eye(2), pressing)
-    assert 1.0 < first < 4.0
+    assert 1.0 < first < MOST_FACTOR
     alone = pulls([t[:, :1] for t in tables], [v + t[:, 1] for t, v in zip(tables, values, strict=True)], np.zeros(1))
     assert first == pytest.approx(misfit_factors(alone, np.ones((1, 1)), EVERY[:1])[0])
     assert second == 1.0

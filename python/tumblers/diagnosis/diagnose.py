@@ -36,6 +36,7 @@ from .own_noise import lead_around
 from .posterior import samples
 from .predictive import is_right
 from .result import EffectEstimate, HeatMap, Interval, NextTrial, RankedHypothesis, Region, TrialFloor, Verdict
+from .sandwich import MOST_FACTOR
 from .simulator import Simulator
 from .tracked_point import with_tracked_point
 from .verdict import judge, refused, ties
@@ -377,9 +378,9 @@ def _assumptions(dataset: Dataset, comparison: Comparison, attribution: Attribut
         f"A second effect must add a factor e^{SECOND:g} of evidence: one in another form than ours looks like two.",
         "Evidence is Laplace's approximation; a parameter costs no more than a unit information prior says, however "
         "sharply the data know it.",
-        "Intervals are 90 % likelihood ratios along the ridge of the posterior, whose deviation counts up to four "
-        "times where trials pull in different directions or the fit stopped short, and what multiplies a nominal "
-        "number, or adds to a nominal force, is known no better than that.",
+        "Intervals are 90 % likelihood ratios along the ridge of the posterior, whose deviation counts up to "
+        f"{MOST_FACTOR:g} times where trials pull in different directions or the fit stopped short, and what "
+        "multiplies a nominal number, or adds to a nominal force, is known no better than that.",
     ]
     if dataset.sensor.tracked_point is None:
         said.append(

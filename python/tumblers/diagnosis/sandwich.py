@@ -24,7 +24,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Pulls", "misfit_factors"]
+__all__ = ["MOST_FACTOR", "Pulls", "misfit_factors"]
 
 Floats = NDArray[np.float64]
 
@@ -32,7 +32,7 @@ Floats = NDArray[np.float64]
 _ALONE = 0.01
 # No factor is more: where a step of Newton's is as long as this, nothing is known of where it leads. A choice, made
 # with the answers of 150 datasets known.
-_MOST = 4.0
+MOST_FACTOR = 4.0
 
 
 class Pulls(NamedTuple):
@@ -53,7 +53,7 @@ class Pulls(NamedTuple):
 
 
 def misfit_factors(pulls: Pulls, gradients: Floats, pressing: NDArray[np.bool_]) -> Floats:
-    """Return by which factor each parameter's deviation is more than Laplace's, from 1 to 4, shape (m,).
+    """Return by which factor each parameter's deviation is more than Laplace's, from 1 to `MOST_FACTOR`, shape (m,).
 
     Parameters
     ----------
@@ -78,4 +78,4 @@ def misfit_factors(pulls: Pulls, gradients: Floats, pressing: NDArray[np.bool_])
     moved = np.einsum("tij,tj,tkj,tk->ti", ways, weight, ways, centred) @ root
     found = np.sum((moved @ gradients.T) ** 2, axis=0) + (gradients @ step) ** 2
     said = np.sum((gradients @ root) ** 2, axis=1)
-    return np.asarray(np.clip(np.sqrt(found / np.maximum(said, 1e-300)), 1.0, _MOST), dtype=np.float64)
+    return np.asarray(np.clip(np.sqrt(found / np.maximum(said, 1e-300)), 1.0, MOST_FACTOR), dtype=np.float64)
