@@ -15,8 +15,8 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from tests.diagnosis.lab import measure, plan
 from tests.parity.nuisances import PlainFit
 
-from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.simulator import Simulator
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.simulator import Simulator
 
 TURNS = 15
 

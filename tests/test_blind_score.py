@@ -17,7 +17,7 @@ from tumblers.blind.repeated import Repeated
 from tumblers.blind.score import Scores, _tie_sigma, score_records
 from tumblers.blind.share import Share
 from tumblers.blind.ties import Tie
-from tumblers.diagnosis.floor import TOLERANCES
+from tumblers.diagnosis.gap.floor import TOLERANCES
 
 
 def answer(kind: str, *effects: tuple[str, str, dict[str, float]], sigma: float = 5.0, **changes: Any) -> Answer:

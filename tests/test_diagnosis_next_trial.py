@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 
 from tumblers.dataset import Dataset, LabTrial, Outcome, load
-from tumblers.diagnosis.attribute import attribute
-from tumblers.diagnosis.candidate import Candidate, candidates, turned
-from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.fitter import Fitter
-from tumblers.diagnosis.foretold import CLIMBS, RUNS, SLIDES, STAYS, Said, foretell
-from tumblers.diagnosis.information import information
-from tumblers.diagnosis.job import Job
-from tumblers.diagnosis.next_trial import in_one_step, next_trials
-from tumblers.diagnosis.posterior import samples
+from tumblers.diagnosis.fitting.fitter import Fitter
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.job import Job
+from tumblers.diagnosis.gap.simulator import LONGEST_STEP_S, Simulator
 from tumblers.diagnosis.result import NextTrial
-from tumblers.diagnosis.simulator import LONGEST_STEP_S, Simulator
+from tumblers.diagnosis.what.attribute import attribute
+from tumblers.diagnosis.what.posterior import samples
+from tumblers.diagnosis.what_next.candidate import Candidate, candidates, turned
+from tumblers.diagnosis.what_next.foretold import CLIMBS, RUNS, SLIDES, STAYS, Said, foretell
+from tumblers.diagnosis.what_next.information import information
+from tumblers.diagnosis.what_next.next_trial import in_one_step, next_trials
 from tumblers.effects import get
 from tumblers.effects.base import Effect
 from tumblers.effects.contact_compliance import ContactCompliance
@@ -152,7 +152,7 @@ def test_a_seed_gives_the_same_trials_on_any_number_of_threads(
     dataset: Dataset, tie: Tie, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     few = tuple(Candidate(field=DRIVE, incline_deg=slope, duration_s=1.0) for slope in (30.0, 37.0, 45.0))
-    monkeypatch.setattr("tumblers.diagnosis.next_trial.candidates", lambda *_: few)
+    monkeypatch.setattr("tumblers.diagnosis.what_next.next_trial.candidates", lambda *_: few)
     both = tie.of((FRICTION, 0), (STRIP, 0))
     first, second = (next_trials(dataset, Simulator(dataset, threads), both, seed=1) for threads in (1, 2))
     assert first
@@ -264,13 +264,13 @@ def test_what_no_trial_along_y_tells_apart_is_told_apart_across(dataset: Dataset
     hypotheses = [((FRICTION,), less), (("friction_anisotropy",), less_along_y)]
     simulator = in_one_step(data, hypotheses, 2)
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr("tumblers.diagnosis.next_trial.candidates", lambda *_: along_y)
+        patched.setattr("tumblers.diagnosis.what_next.next_trial.candidates", lambda *_: along_y)
         (only,) = next_trials(data, simulator, hypotheses, seed=1)
         assert not only.within_ranges
         assert only.why.startswith(f"separates {FRICTION} from friction_anisotropy (")
         assert "beyond what was done so far in direction" in only.why
         assert abs(only.trial["field"]["rotation_axis"][1]) > 0.5
-        patched.setattr("tumblers.diagnosis.next_trial.turned", lambda *_: ())
+        patched.setattr("tumblers.diagnosis.what_next.next_trial.turned", lambda *_: ())
         assert next_trials(data, simulator, hypotheses, seed=1) == ()
 
 

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from tumblers.dataset import Dataset, LabTrial, Outcome, Sensor, Track
-from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.job import Job
-from tumblers.diagnosis.localise import localise
-from tumblers.diagnosis.pose import body_axis, heading_of, tilt_of
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.job import Job
+from tumblers.diagnosis.gap.pose import body_axis, heading_of, tilt_of
+from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.diagnosis.result import HeatMap, Region
-from tumblers.diagnosis.simulator import Simulator
+from tumblers.diagnosis.where.localise import localise
 from tumblers.effects import get
 from tumblers.effects.base import Effect
 from tumblers.field import Field, StaticField

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 from tumblers.dataset import Dataset, LabTrial, Outcome, Sensor, Track
-from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.job import Job
-from tumblers.diagnosis.pose import body_axis, tilt_of
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.job import Job
+from tumblers.diagnosis.gap.pose import body_axis, tilt_of
+from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.diagnosis.result import MissingWrench
-from tumblers.diagnosis.simulator import Simulator
-from tumblers.diagnosis.wrench import missing_wrench, wrench_regions
-from tumblers.diagnosis.wrench_maps import mapped
-from tumblers.diagnosis.wrench_means import Windows
-from tumblers.diagnosis.wrench_pieces import along, at_rest, within_cycles
+from tumblers.diagnosis.where.wrench import missing_wrench, wrench_regions
+from tumblers.diagnosis.where.wrench_maps import mapped
+from tumblers.diagnosis.where.wrench_means import Windows
+from tumblers.diagnosis.where.wrench_pieces import along, at_rest, within_cycles
 from tumblers.field import TableField
 from tumblers.model import Model
 from tumblers.presets import ROBOTS, SUBSTRATES, drive

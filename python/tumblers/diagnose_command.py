@@ -54,7 +54,7 @@ def diagnose(
     measured = load(dataset)
     names = None if effects is None else _effect_names(effects)
     from .diagnosis.diagnose import diagnose as run
-    from .diagnosis.words import summary
+    from .diagnosis.wording.words import summary
 
     start = perf_counter()
     try:

@@ -12,11 +12,11 @@ import pytest
 
 from tumblers import _core
 from tumblers.dataset import Dataset, LabTrial, Outcome, Sensor, Track
-from tumblers.diagnosis.comparison import Comparison, Residual
-from tumblers.diagnosis.fitter import Fitter
-from tumblers.diagnosis.job import Job
-from tumblers.diagnosis.pose import body_axis, heading_of, tilt_of
-from tumblers.diagnosis.simulator import LONGEST_STEP_S, Simulator
+from tumblers.diagnosis.fitting.fitter import Fitter
+from tumblers.diagnosis.gap.comparison import Comparison, Residual
+from tumblers.diagnosis.gap.job import Job
+from tumblers.diagnosis.gap.pose import body_axis, heading_of, tilt_of
+from tumblers.diagnosis.gap.simulator import LONGEST_STEP_S, Simulator
 from tumblers.effects.base import Effect
 from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.field import Field, StaticField

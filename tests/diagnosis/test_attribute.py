@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from importlib import import_module
 from math import log
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-from tumblers.diagnosis.contender import Contender
+from tumblers.diagnosis.what import attribute as attribution
+from tumblers.diagnosis.what.contender import Contender
 
 from .lab import NOTHING, coarse_lab
-
-# The package has the function by the module's name.
-attribution = import_module("tumblers.diagnosis.attribute")
 
 
 def test_what_leads_once_another_counts_as_the_nominal_model_imposes_its_steps(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from tumblers.diagnosis.beginnings import from_beginnings, from_its_own_beginning, promise
-from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.contender import of_fit
-from tumblers.diagnosis.fitter import Fitter
-from tumblers.diagnosis.own_noise import NEAR, settled_at
-from tumblers.diagnosis.search import Search
-from tumblers.diagnosis.simulator import Simulator
-from tumblers.diagnosis.thresholds import CLEAR
+from tumblers.diagnosis.fitting.fitter import Fitter
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.simulator import Simulator
+from tumblers.diagnosis.what.beginnings import from_beginnings, from_its_own_beginning, promise
+from tumblers.diagnosis.what.contender import of_fit
+from tumblers.diagnosis.what.own_noise import NEAR, settled_at
+from tumblers.diagnosis.what.search import Search
+from tumblers.diagnosis.what.thresholds import CLEAR
 from tumblers.effects.magnetization_strength import MagnetizationStrength
 from tumblers.effects.surface_roughness import SurfaceRoughness
 

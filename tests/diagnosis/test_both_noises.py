@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
-from tumblers.diagnosis import both_noises
-from tumblers.diagnosis.both_noises import by_both_noises
-from tumblers.diagnosis.contender import Contender
+from tumblers.diagnosis.what import both_noises
+from tumblers.diagnosis.what.both_noises import by_both_noises
+from tumblers.diagnosis.what.contender import Contender
 
 
 def ranked(name: str, total: float, log_evidence: float) -> Contender:

@@ -17,7 +17,7 @@ import tumblers
 from tumblers.commands import run
 from tumblers.dataset import Dataset, Track
 from tumblers.diagnosis.diagnosis import FILES, Diagnosis
-from tumblers.diagnosis.words import summary
+from tumblers.diagnosis.wording.words import summary
 from tumblers.effects import catalogue
 from tumblers.effects.catalogue import CATALOGUE
 

@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.contender import Contender, of_fit, of_nominal
-from tumblers.diagnosis.counterpart import counterparts, with_counterparts
-from tumblers.diagnosis.fitter import Fitter
-from tumblers.diagnosis.hypothesis import Hypothesis
-from tumblers.diagnosis.own_noise import settled_at
-from tumblers.diagnosis.search import Search
-from tumblers.diagnosis.simulator import Simulator
-from tumblers.diagnosis.thresholds import CLEAR
+from tumblers.diagnosis.fitting.fitter import Fitter
+from tumblers.diagnosis.fitting.hypothesis import Hypothesis
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.simulator import Simulator
+from tumblers.diagnosis.what.contender import Contender, of_fit, of_nominal
+from tumblers.diagnosis.what.counterpart import counterparts, with_counterparts
+from tumblers.diagnosis.what.own_noise import settled_at
+from tumblers.diagnosis.what.search import Search
+from tumblers.diagnosis.what.thresholds import CLEAR
 from tumblers.effects.base import Effect
 from tumblers.effects.camera_calibration import CameraCalibration
 from tumblers.effects.friction_anisotropy import FrictionAnisotropy
@@ -136,7 +136,7 @@ def test_a_search_asks_at_its_end_what_else_does_what_its_leader_does(monkeypatc
         asked.append((contender.names, kind.name))
         return counterparts(fitter, contender, kind, possible)
 
-    monkeypatch.setattr("tumblers.diagnosis.counterpart.counterparts", spied)
+    monkeypatch.setattr("tumblers.diagnosis.what.counterpart.counterparts", spied)
     found = {c.names: c.total for c in search.contenders()}
     # Which of the two leads is up to the noise: they do the same.
     same = ("substrate_tilt", "stray_field_gradient")

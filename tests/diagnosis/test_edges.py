@@ -14,13 +14,13 @@ import pytest
 from tumblers import EffectError, InputError, dataset
 from tumblers.dataset import Dataset, LabTrial, Outcome, Track
 from tumblers.diagnosis import Diagnosis, diagnose
-from tumblers.diagnosis.caution import cautions
-from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.localise import localise
-from tumblers.diagnosis.predictive import _worst, is_right
-from tumblers.diagnosis.reading import reached
-from tumblers.diagnosis.simulator import Simulator
-from tumblers.diagnosis.words import summary
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.predictive import _worst, is_right
+from tumblers.diagnosis.gap.reading import reached
+from tumblers.diagnosis.gap.simulator import Simulator
+from tumblers.diagnosis.where.localise import localise
+from tumblers.diagnosis.wording.caution import cautions
+from tumblers.diagnosis.wording.words import summary
 from tumblers.effects import CATALOGUE, get, load_file
 from tumblers.effects.size_error import SizeError
 from tumblers.field import StaticField, TableField

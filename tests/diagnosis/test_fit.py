@@ -9,12 +9,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tumblers.dataset import Dataset, Outcome
-from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.descent import Descent
-from tumblers.diagnosis.fitter import Fitter
-from tumblers.diagnosis.loss import FAR, HUBER, huber, robust_cost
-from tumblers.diagnosis.search import Search
-from tumblers.diagnosis.simulator import Simulator
+from tumblers.diagnosis.fitting.descent import Descent
+from tumblers.diagnosis.fitting.fitter import Fitter
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.loss import FAR, HUBER, huber, robust_cost
+from tumblers.diagnosis.gap.simulator import Simulator
+from tumblers.diagnosis.what.search import Search
 from tumblers.effects.magnetization_strength import MagnetizationStrength
 from tumblers.effects.stray_field_gradient import StrayFieldGradient
 

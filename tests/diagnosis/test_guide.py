@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from tests.cameras import CAMERAS
 from tumblers.camera import Camera
 from tumblers.dataset import LabTrial, Outcome, Track
-from tumblers.diagnosis.guide import Guide
+from tumblers.diagnosis.gap.guide import Guide
 from tumblers.presets import drive
 
 TIME = np.arange(0.0, 1.0, 0.05)

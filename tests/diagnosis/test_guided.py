@@ -9,17 +9,18 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tumblers.diagnosis import guided, predictive
-from tumblers.diagnosis import search as searches
-from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.contender import Contender
-from tumblers.diagnosis.fitter import Fitter
-from tumblers.diagnosis.guided import _Cloud, _spread, found_again
-from tumblers.diagnosis.hypothesis import Hypothesis
-from tumblers.diagnosis.job import Job
-from tumblers.diagnosis.own_noise import settled_at
-from tumblers.diagnosis.search import Search
-from tumblers.diagnosis.simulator import Simulator
+from tumblers.diagnosis.fitting.fitter import Fitter
+from tumblers.diagnosis.fitting.hypothesis import Hypothesis
+from tumblers.diagnosis.gap import predictive
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.job import Job
+from tumblers.diagnosis.gap.simulator import Simulator
+from tumblers.diagnosis.what import guided
+from tumblers.diagnosis.what import search as searches
+from tumblers.diagnosis.what.contender import Contender
+from tumblers.diagnosis.what.guided import _Cloud, _spread, found_again
+from tumblers.diagnosis.what.own_noise import settled_at
+from tumblers.diagnosis.what.search import Search
 from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.effects.magnetization_misalignment import MagnetizationMisalignment
 from tumblers.effects.magnetization_strength import MagnetizationStrength

@@ -12,16 +12,16 @@ from numpy.typing import NDArray
 
 from tumblers import diagnose
 from tumblers.dataset import Outcome
-from tumblers.diagnosis.attribute import REFUSED
-from tumblers.diagnosis.comparison import Comparison, Residual
-from tumblers.diagnosis.contender import Contender, of_fit
 from tumblers.diagnosis.diagnose import _Conclusion
-from tumblers.diagnosis.fitter import Fitter
-from tumblers.diagnosis.floor import SHARED
-from tumblers.diagnosis.held_out import HeldOut, folds, held_out, is_foretold, shrink
-from tumblers.diagnosis.hypothesis import Hypothesis
-from tumblers.diagnosis.pose import Path
-from tumblers.diagnosis.simulator import Simulator
+from tumblers.diagnosis.fitting.fitter import Fitter
+from tumblers.diagnosis.fitting.hypothesis import Hypothesis
+from tumblers.diagnosis.gap.comparison import Comparison, Residual
+from tumblers.diagnosis.gap.floor import SHARED
+from tumblers.diagnosis.gap.pose import Path
+from tumblers.diagnosis.gap.simulator import Simulator
+from tumblers.diagnosis.how_far.held_out import HeldOut, folds, held_out, is_foretold, shrink
+from tumblers.diagnosis.what.attribute import REFUSED
+from tumblers.diagnosis.what.contender import Contender, of_fit
 from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.presets import drive
 

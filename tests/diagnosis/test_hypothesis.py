@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from tumblers.diagnosis.descent import _MOST_STEP
-from tumblers.diagnosis.hypothesis import Hypothesis
-from tumblers.diagnosis.simulator import Simulator
+from tumblers.diagnosis.fitting.descent import _MOST_STEP
+from tumblers.diagnosis.fitting.hypothesis import Hypothesis
+from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.effects.base import Effect
 from tumblers.effects.catalogue import CATALOGUE
 from tumblers.effects.field_rolloff import FieldRolloff

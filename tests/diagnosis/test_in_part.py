@@ -13,16 +13,16 @@ import pytest
 
 from tumblers.blind.law import Law, State
 from tumblers.blind.outside import AmplifierDropout, FadingMagnet, PhaseJump, StickySpot
-from tumblers.diagnosis.acting import DRIVE, TURN, words_of
-from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.in_part import _best_part, _search, _stands_out, acts_in_part
-from tumblers.diagnosis.job import Interlude, Job
-from tumblers.diagnosis.localise import localise
-from tumblers.diagnosis.part_axis import Tried, along_y, cycle, from_a_moment
-from tumblers.diagnosis.part_runs import Runs
-from tumblers.diagnosis.pose import Path
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.job import Interlude, Job
+from tumblers.diagnosis.gap.pose import Path
+from tumblers.diagnosis.gap.simulator import LONGEST_STEP_S
 from tumblers.diagnosis.result import Region
-from tumblers.diagnosis.simulator import LONGEST_STEP_S
+from tumblers.diagnosis.where.acting import DRIVE, TURN, words_of
+from tumblers.diagnosis.where.in_part import _best_part, _search, _stands_out, acts_in_part
+from tumblers.diagnosis.where.localise import localise
+from tumblers.diagnosis.where.part_axis import Tried, along_y, cycle, from_a_moment
+from tumblers.diagnosis.where.part_runs import Runs
 from tumblers.effects import get
 from tumblers.effects.base import Effect
 from tumblers.effects.electrostatic_force import ElectrostaticForce
@@ -101,7 +101,7 @@ def test_what_acts_all_along_is_run_in_the_steps_that_it_asks_for(monkeypatch: p
 
     monkeypatch.setattr(simulator, "run", spied)
     # Nothing is searched: it is seen before.
-    monkeypatch.setattr("tumblers.diagnosis.in_part._parts", lambda *_: ())
+    monkeypatch.setattr("tumblers.diagnosis.where.in_part._parts", lambda *_: ())
     paths = comparison.nominal_paths
     assert not acts_in_part(comparison, comparison.residual(paths), paths, [1.0], effects)
     assert taken == [before]

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.fitter import Fitter
-from tumblers.diagnosis.hypothesis import Hypothesis
-from tumblers.diagnosis.least import least
-from tumblers.diagnosis.simulator import Simulator
+from tumblers.diagnosis.fitting.fitter import Fitter
+from tumblers.diagnosis.fitting.hypothesis import Hypothesis
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.simulator import Simulator
+from tumblers.diagnosis.what.least import least
 from tumblers.effects.magnetization_misalignment import MagnetizationMisalignment
 
 from .lab import measure, plan, rollouts_made

@@ -15,12 +15,12 @@ from threadpoolctl import threadpool_info, threadpool_limits
 from tumblers import Scenario, simulate
 from tumblers.dataset import Dataset
 from tumblers.diagnosis import Diagnosis, diagnose
-from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.fitter import Fitter
-from tumblers.diagnosis.loss import robust_cost
-from tumblers.diagnosis.pose import Path
-from tumblers.diagnosis.simulator import Simulator, _rows_every
-from tumblers.diagnosis.words import summary
+from tumblers.diagnosis.fitting.fitter import Fitter
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.loss import robust_cost
+from tumblers.diagnosis.gap.pose import Path
+from tumblers.diagnosis.gap.simulator import Simulator, _rows_every
+from tumblers.diagnosis.wording.words import summary
 from tumblers.effects import get
 from tumblers.effects.base import Effect
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tumblers.diagnosis import nearby
-from tumblers.diagnosis.contender import of_fit
-from tumblers.diagnosis.fit import Fit
-from tumblers.diagnosis.fitter import Fitter
-from tumblers.diagnosis.hypothesis import Hypothesis
-from tumblers.diagnosis.nearby import _moved_alone, _points_around, shaken
-from tumblers.diagnosis.simulator import Simulator
+from tumblers.diagnosis.fitting.fit import Fit
+from tumblers.diagnosis.fitting.fitter import Fitter
+from tumblers.diagnosis.fitting.hypothesis import Hypothesis
+from tumblers.diagnosis.gap.simulator import Simulator
+from tumblers.diagnosis.what import nearby
+from tumblers.diagnosis.what.contender import of_fit
+from tumblers.diagnosis.what.nearby import _moved_alone, _points_around, shaken
 from tumblers.effects.base import Effect
 from tumblers.effects.size_error import SizeError
 from tumblers.effects.stray_field_gradient import StrayFieldGradient

@@ -9,13 +9,13 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tumblers.dataset import Dataset, Outcome
-from tumblers.diagnosis import built_floors
-from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.fitter import Fitter
-from tumblers.diagnosis.job import Job
-from tumblers.diagnosis.objective import _SHARES
-from tumblers.diagnosis.pose import Path
-from tumblers.diagnosis.simulator import Simulator
+from tumblers.diagnosis.fitting.fitter import Fitter
+from tumblers.diagnosis.fitting.objective import _SHARES
+from tumblers.diagnosis.gap import built_floors
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.job import Job
+from tumblers.diagnosis.gap.pose import Path
+from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.effects.base import Effect
 from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.effects.magnetization_misalignment import MagnetizationMisalignment

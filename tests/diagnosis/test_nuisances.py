@@ -10,11 +10,11 @@ from numpy.testing import assert_allclose
 
 from tumblers.dataset import Track
 from tumblers.diagnosis import diagnose
-from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.floor import SHARED
-from tumblers.diagnosis.hypothesis import Hypothesis
-from tumblers.diagnosis.predictive import mean_square
-from tumblers.diagnosis.simulator import Simulator
+from tumblers.diagnosis.fitting.hypothesis import Hypothesis
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.floor import SHARED
+from tumblers.diagnosis.gap.predictive import mean_square
+from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.effects import get
 from tumblers.model import Model
 

@@ -9,11 +9,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tumblers.dataset import Dataset, LabTrial, Track
-from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.job import Job
-from tumblers.diagnosis.observed import observe
-from tumblers.diagnosis.reading import reached
-from tumblers.diagnosis.simulator import Simulator
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.job import Job
+from tumblers.diagnosis.gap.observed import observe
+from tumblers.diagnosis.gap.reading import reached
+from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.effects.adhesion_coefficient import AdhesionCoefficient
 from tumblers.field import StaticField
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.special import logsumexp
 
-from tumblers.diagnosis.fit import Fit
-from tumblers.diagnosis.hypothesis import PRIOR_SIGMA, Hypothesis
-from tumblers.diagnosis.occam import _shares, log_occam, neutral_sets, seldom_needed, unneeded
-from tumblers.diagnosis.simulator import Simulator
+from tumblers.diagnosis.fitting.fit import Fit
+from tumblers.diagnosis.fitting.hypothesis import PRIOR_SIGMA, Hypothesis
+from tumblers.diagnosis.gap.simulator import Simulator
+from tumblers.diagnosis.what.occam import _shares, log_occam, neutral_sets, seldom_needed, unneeded
 from tumblers.effects.catalogue import CATALOGUE
 
 from .lab import NOTHING, plan
@@ -176,7 +176,7 @@ def test_an_exponent_that_rests_at_zero_is_neutral_and_costs_its_place_among_the
 @pytest.mark.parametrize("names", [("friction_coefficient",), ("substrate_tilt", "friction_coefficient")])
 def test_a_form_is_expected_in_its_share_of_the_cases(names: tuple[str, ...], monkeypatch: pytest.MonkeyPatch) -> None:
     # A half is the same whichever side is counted.
-    monkeypatch.setattr("tumblers.diagnosis.occam.FORM_SHARE", 0.2)
+    monkeypatch.setattr("tumblers.diagnosis.what.occam.FORM_SHARE", 0.2)
     hypothesis = hypothesis_of(*names)
     expected = neutral_sets(hypothesis)
     drift = hypothesis.keys.index(("friction_coefficient", "drift_per_s"))

@@ -10,11 +10,11 @@ from tumblers.blind.outside import AmplifierDropout, PhaseJump, StickySpot
 from tumblers.blind.view import channels_of
 from tumblers.blind.world import watch
 from tumblers.dataset import Dataset, Track
-from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.localise import localise
-from tumblers.diagnosis.onset import _evidence, _shared, begins_at_phase, begins_at_place, begins_at_time
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.diagnosis.result import Region
-from tumblers.diagnosis.simulator import Simulator
+from tumblers.diagnosis.where.localise import localise
+from tumblers.diagnosis.where.onset import _evidence, _shared, begins_at_phase, begins_at_place, begins_at_time
 from tumblers.effects import get
 from tumblers.presets import drive
 

@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 
-from tumblers.diagnosis import own_noise
-from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.contender import Contender
-from tumblers.diagnosis.hypothesis import SECOND
-from tumblers.diagnosis.own_noise import again, against_the_best, each_by_itself, settled
+from tumblers.diagnosis.fitting.hypothesis import SECOND
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.what import own_noise
+from tumblers.diagnosis.what.contender import Contender
+from tumblers.diagnosis.what.own_noise import again, against_the_best, each_by_itself, settled
 
 # Against the noise around another, and around itself.
 LENT = {"a": 1.0, "b": 2.0, "c": 3.0, "d": 4.0, "e": 5.0}

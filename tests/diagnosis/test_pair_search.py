@@ -8,15 +8,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tumblers.diagnosis.beginnings import MANY
-from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.contender import Contender, of_fit, of_nominal
-from tumblers.diagnosis.fitter import Fitter
-from tumblers.diagnosis.hypothesis import Hypothesis
-from tumblers.diagnosis.pair_search import PairSearch, kept
-from tumblers.diagnosis.pairs import Pairs
-from tumblers.diagnosis.search import Search
-from tumblers.diagnosis.simulator import Simulator
+from tumblers.diagnosis.fitting.fitter import Fitter
+from tumblers.diagnosis.fitting.hypothesis import Hypothesis
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.simulator import Simulator
+from tumblers.diagnosis.what.beginnings import MANY
+from tumblers.diagnosis.what.contender import Contender, of_fit, of_nominal
+from tumblers.diagnosis.what.pair_search import PairSearch, kept
+from tumblers.diagnosis.what.pairs import Pairs
+from tumblers.diagnosis.what.search import Search
 from tumblers.effects.camera_calibration import CameraCalibration
 from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.effects.magnetization_misalignment import MagnetizationMisalignment
@@ -85,8 +85,8 @@ def test_more_firsts_are_tried_where_every_pair_leaves_a_gap(enough: bool, monke
             add(pairs, first, others)
 
     monkeypatch.setattr(Pairs, "add", spied)
-    monkeypatch.setattr("tumblers.diagnosis.pair_search.is_enough", lambda *_: enough)
-    monkeypatch.setattr("tumblers.diagnosis.pair_search.is_wanting", lambda *_: True)
+    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.is_enough", lambda *_: enough)
+    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.is_wanting", lambda *_: True)
     assert search.pairing.found(singles, strong=True)
     # What is exchanged later is another contender of the same name.
     assert [any(first is single for first in tried) for single in singles] == [True, True, *(3 * [not enough]), False]
@@ -108,7 +108,7 @@ def test_of_many_parameters_what_was_not_searched_is_searched_far_away_beside_th
         sought.append(contender)
         return replace(contender, cost=100.0)
 
-    monkeypatch.setattr("tumblers.diagnosis.pair_search.from_beginnings", far)
+    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.from_beginnings", far)
     # What is known is searched from where it is, wherever it stands.
     for found in ([best, second, third], [best, third, second]):
         sought.clear()
@@ -146,10 +146,10 @@ def test_a_pair_that_only_the_exchange_brings_is_searched_over_its_range_too(
         sought.append(contender)
         return contender
 
-    monkeypatch.setattr("tumblers.diagnosis.pair_search.settled", as_they_are)
-    monkeypatch.setattr("tumblers.diagnosis.pair_search.refined", refining)
-    monkeypatch.setattr("tumblers.diagnosis.pair_search.from_beginnings", far)
-    monkeypatch.setattr("tumblers.diagnosis.pair_search.is_wanting", lambda *_: False)
+    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.settled", as_they_are)
+    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.refined", refining)
+    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.from_beginnings", far)
+    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.is_wanting", lambda *_: False)
     monkeypatch.setattr(Pairs, "add", lambda *_: None)
     monkeypatch.setattr(Pairs, "join", lambda *_: None)
     monkeypatch.setattr(PairSearch, "exchanged", lambda *_: exchanged)
@@ -187,10 +187,10 @@ def test_where_a_cause_is_strong_the_best_are_joined_and_where_pairs_leave_a_gap
         searched.append(those)
         return list(found)
 
-    monkeypatch.setattr("tumblers.diagnosis.pair_search.settled", as_they_are)
-    monkeypatch.setattr("tumblers.diagnosis.pair_search.refined", as_they_are)
-    monkeypatch.setattr("tumblers.diagnosis.pair_search.is_wanting", lambda *_: wanting)
-    monkeypatch.setattr("tumblers.diagnosis.pair_search.is_enough", lambda *_: enough)
+    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.settled", as_they_are)
+    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.refined", as_they_are)
+    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.is_wanting", lambda *_: wanting)
+    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.is_enough", lambda *_: enough)
     monkeypatch.setattr(Pairs, "add", lambda *_: None)
     monkeypatch.setattr(Pairs, "join", lambda _, those: joined.append(those))
     monkeypatch.setattr(PairSearch, "exchanged", lambda _, found, __: list(found))
@@ -218,8 +218,8 @@ def test_what_is_far_away_and_in_the_best_pair_is_one_first_more_beside_what_is_
     def far(*_: object) -> Contender:
         raise AssertionError("the whole search for pairs")
 
-    monkeypatch.setattr("tumblers.diagnosis.pair_search.settled", as_they_are)
-    monkeypatch.setattr("tumblers.diagnosis.pair_search.from_beginnings", far)
+    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.settled", as_they_are)
+    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.from_beginnings", far)
     monkeypatch.setattr(PairSearch, "exchanged", far)
     monkeypatch.setattr(Pairs, "join", far)
     monkeypatch.setattr(Pairs, "add", adding)
@@ -255,12 +255,12 @@ def test_pairs_are_searched_again_as_a_whole_unless_what_is_far_away_is_in_a_pai
         called.append(("beside", known))
         return list(known)
 
-    monkeypatch.setattr("tumblers.diagnosis.search.settled", as_they_are)
-    monkeypatch.setattr("tumblers.diagnosis.search.all_shaken", as_they_are)
-    monkeypatch.setattr("tumblers.diagnosis.search.with_counterparts", as_they_are)
-    monkeypatch.setattr("tumblers.diagnosis.search.resolved", lambda _, model, those, __: (model, those))
-    monkeypatch.setattr("tumblers.diagnosis.search.is_wanting", lambda *_: True)
-    monkeypatch.setattr("tumblers.diagnosis.search.is_enough", lambda *_: False)
+    monkeypatch.setattr("tumblers.diagnosis.what.search.settled", as_they_are)
+    monkeypatch.setattr("tumblers.diagnosis.what.search.all_shaken", as_they_are)
+    monkeypatch.setattr("tumblers.diagnosis.what.search.with_counterparts", as_they_are)
+    monkeypatch.setattr("tumblers.diagnosis.what.search.resolved", lambda _, model, those, __: (model, those))
+    monkeypatch.setattr("tumblers.diagnosis.what.search.is_wanting", lambda *_: True)
+    monkeypatch.setattr("tumblers.diagnosis.what.search.is_enough", lambda *_: False)
     monkeypatch.setattr(search, "_singles", lambda _: [near, replace(far, cost=3e6)])
     monkeypatch.setattr(search, "_refined", list)
     monkeypatch.setattr(search, "_far", lambda *_: [far, near])
@@ -313,8 +313,8 @@ def test_seconds_are_added_to_an_effect_that_the_best_pair_has_moved_to_where_it
         assert (single, evaluations) == (flattered, 1)
         return alone
 
-    monkeypatch.setattr("tumblers.diagnosis.search.nested", nested)
-    monkeypatch.setattr("tumblers.diagnosis.search.by_itself", by_itself)
+    monkeypatch.setattr("tumblers.diagnosis.what.search.nested", nested)
+    monkeypatch.setattr("tumblers.diagnosis.what.search.by_itself", by_itself)
     monkeypatch.setattr(PairSearch, "beside", beside)
     assert search._with_moved([best, alone, idle], pairs)[1] == (pairs[::-1] if again else pairs)
     called.clear()

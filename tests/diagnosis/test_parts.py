@@ -7,11 +7,11 @@ from math import cos, pi, radians, sin
 import numpy as np
 import pytest
 
-from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.loss import HUBER, robust_cost
-from tumblers.diagnosis.pose import Path, body_axis, heading_of, relative_turn, tilt_of
-from tumblers.diagnosis.reading import reached
-from tumblers.diagnosis.simulator import Simulator
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.loss import HUBER, robust_cost
+from tumblers.diagnosis.gap.pose import Path, body_axis, heading_of, relative_turn, tilt_of
+from tumblers.diagnosis.gap.reading import reached
+from tumblers.diagnosis.gap.simulator import Simulator
 
 from .lab import measure, plan
 

@@ -7,9 +7,9 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.optimize import minimize_scalar
 
-from tumblers.diagnosis.fit import Fit
-from tumblers.diagnosis.hypothesis import Hypothesis
-from tumblers.diagnosis.posterior import _needed
+from tumblers.diagnosis.fitting.fit import Fit
+from tumblers.diagnosis.fitting.hypothesis import Hypothesis
+from tumblers.diagnosis.what.posterior import _needed
 from tumblers.effects.friction_coefficient import FrictionCoefficient
 
 from .lab import NOTHING, coarse_lab

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tumblers.diagnosis.beginnings import MANY
-from tumblers.diagnosis.contender import Contender, of_fit
-from tumblers.diagnosis.fitter import Fitter
-from tumblers.diagnosis.refined import refined
-from tumblers.diagnosis.search import Search
+from tumblers.diagnosis.fitting.fitter import Fitter
+from tumblers.diagnosis.what.beginnings import MANY
+from tumblers.diagnosis.what.contender import Contender, of_fit
+from tumblers.diagnosis.what.refined import refined
+from tumblers.diagnosis.what.search import Search
 from tumblers.effects.size_error import SizeError
 from tumblers.effects.surface_roughness import SurfaceRoughness
 
@@ -36,8 +36,8 @@ def test_of_many_parameters_the_best_is_searched_over_its_range_and_another_pair
         sought.append(("here", contender))
         return contender
 
-    monkeypatch.setattr("tumblers.diagnosis.refined.from_beginnings", over_the_range)
-    monkeypatch.setattr("tumblers.diagnosis.refined.from_its_own_beginning", from_where_it_is)
+    monkeypatch.setattr("tumblers.diagnosis.what.refined.from_beginnings", over_the_range)
+    monkeypatch.setattr("tumblers.diagnosis.what.refined.from_its_own_beginning", from_where_it_is)
     for contenders, expected in (
         ([pair, few], [("range", pair), ("range", few)]),
         ([few, pair], [("range", few), ("here", pair)]),

@@ -14,12 +14,12 @@ from matplotlib.figure import Figure
 from tumblers import InputError
 from tumblers.diagnosis import plots
 from tumblers.diagnosis.diagnosis import FILES, Diagnosis
-from tumblers.diagnosis.phrase import title_of
-from tumblers.diagnosis.report import report_html
+from tumblers.diagnosis.report.report import report_html
 from tumblers.diagnosis.result import (
     Region,
 )
-from tumblers.diagnosis.words import headline
+from tumblers.diagnosis.wording.phrase import title_of
+from tumblers.diagnosis.wording.words import headline
 from tumblers.effects import CATALOGUE
 
 from .example import lab, made, no_gap, outcomes_only, small, wrench

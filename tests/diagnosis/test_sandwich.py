@@ -10,14 +10,14 @@ from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
 from tumblers.diagnosis import diagnose
-from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.descent import Descent
-from tumblers.diagnosis.estimate import _pressing
-from tumblers.diagnosis.fitter import Fitter
-from tumblers.diagnosis.hypothesis import PRIOR_SIGMA, Hypothesis
-from tumblers.diagnosis.sandwich import MOST_FACTOR, Pulls, misfit_factors
-from tumblers.diagnosis.search import Search
-from tumblers.diagnosis.simulator import Simulator
+from tumblers.diagnosis.fitting.descent import Descent
+from tumblers.diagnosis.fitting.fitter import Fitter
+from tumblers.diagnosis.fitting.hypothesis import PRIOR_SIGMA, Hypothesis
+from tumblers.diagnosis.fitting.sandwich import MOST_FACTOR, Pulls, misfit_factors
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.simulator import Simulator
+from tumblers.diagnosis.what.estimate import _pressing
+from tumblers.diagnosis.what.search import Search
 from tumblers.effects.size_error import SizeError
 from tumblers.effects.substrate_tilt import SubstrateTilt
 
@@ -168,7 +168,7 @@ def test_an_interval_is_wider_by_its_factor(monkeypatch: pytest.MonkeyPatch) -> 
     ends = []
     for factor in (1.0, 3.0):
         monkeypatch.setattr(
-            "tumblers.diagnosis.estimate.misfit_factors",
+            "tumblers.diagnosis.what.estimate.misfit_factors",
             lambda _pulls, rows, _pressing, f=factor: np.full(len(rows), f),
         )
         (effect,) = diagnose(dataset, effects=["size_error"]).effects

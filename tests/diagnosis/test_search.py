@@ -7,14 +7,14 @@ from dataclasses import replace
 
 import pytest
 
-from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.contender import Contender, of_nominal
-from tumblers.diagnosis.fitter import Fitter
-from tumblers.diagnosis.own_noise import NEAR, OWN, beside
-from tumblers.diagnosis.pair_search import PairSearch
-from tumblers.diagnosis.pairs import Pairs
-from tumblers.diagnosis.search import Search
-from tumblers.diagnosis.simulator import LONGEST_STEP_S, Simulator
+from tumblers.diagnosis.fitting.fitter import Fitter
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.simulator import LONGEST_STEP_S, Simulator
+from tumblers.diagnosis.what.contender import Contender, of_nominal
+from tumblers.diagnosis.what.own_noise import NEAR, OWN, beside
+from tumblers.diagnosis.what.pair_search import PairSearch
+from tumblers.diagnosis.what.pairs import Pairs
+from tumblers.diagnosis.what.search import Search
 from tumblers.effects.catalogue import CATALOGUE
 from tumblers.effects.magnetization_strength import MagnetizationStrength
 from tumblers.effects.size_error import SizeError
@@ -81,7 +81,7 @@ def test_either_of_a_pair_that_only_the_right_steps_put_first_is_exchanged(
 
     monkeypatch.setattr(PairSearch, "exchanged", spied)
     monkeypatch.setattr(PairSearch, "is_named", lambda *_: named)
-    monkeypatch.setattr("tumblers.diagnosis.search.is_wanting", lambda *_: False)
+    monkeypatch.setattr("tumblers.diagnosis.what.search.is_wanting", lambda *_: False)
     made = search._in_short_steps(found)
     assert made[0].names == ranked[0].names
     assert {contender.names for contender in made} == {contender.names for contender in found}

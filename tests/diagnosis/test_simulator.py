@@ -8,11 +8,11 @@ import pytest
 from tumblers import _core
 from tumblers.camera import Camera
 from tumblers.dataset import Dataset, Sensor, Track
-from tumblers.diagnosis import simulator as simulators
-from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.guide import Nudge
-from tumblers.diagnosis.job import Job
-from tumblers.diagnosis.simulator import Simulator
+from tumblers.diagnosis.gap import simulator as simulators
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.guide import Nudge
+from tumblers.diagnosis.gap.job import Job
+from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.effects.base import Effect
 from tumblers.effects.camera_calibration import CameraCalibration
 from tumblers.effects.center_of_mass_offset import CenterOfMassOffset

@@ -7,16 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.contender import Contender, of_fit
-from tumblers.diagnosis.fitter import Fitter
-from tumblers.diagnosis.hypothesis import Hypothesis
-from tumblers.diagnosis.occam import unneeded
-from tumblers.diagnosis.own_noise import POLISH_POINTS, by_itself, settled_at
-from tumblers.diagnosis.pairs import Pairs
-from tumblers.diagnosis.simulator import Simulator
-from tumblers.diagnosis.sparse import as_far
-from tumblers.diagnosis.thresholds import CLEAR
+from tumblers.diagnosis.fitting.fitter import Fitter
+from tumblers.diagnosis.fitting.hypothesis import Hypothesis
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.simulator import Simulator
+from tumblers.diagnosis.what.contender import Contender, of_fit
+from tumblers.diagnosis.what.occam import unneeded
+from tumblers.diagnosis.what.own_noise import POLISH_POINTS, by_itself, settled_at
+from tumblers.diagnosis.what.pairs import Pairs
+from tumblers.diagnosis.what.sparse import as_far
+from tumblers.diagnosis.what.thresholds import CLEAR
 from tumblers.effects.base import Effect
 from tumblers.effects.contact_compliance import ContactCompliance
 from tumblers.effects.magnetization_strength import MagnetizationStrength

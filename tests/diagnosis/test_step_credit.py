@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.conclusion import in_steps_of
-from tumblers.diagnosis.contender import of_nominal
-from tumblers.diagnosis.hypothesis import Hypothesis
-from tumblers.diagnosis.job import Job
-from tumblers.diagnosis.own_noise import against_itself
-from tumblers.diagnosis.search import Search
-from tumblers.diagnosis.simulator import LONGEST_STEP_S, Simulator
-from tumblers.diagnosis.step_credit import step_credit
+from tumblers.diagnosis.fitting.hypothesis import Hypothesis
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.job import Job
+from tumblers.diagnosis.gap.simulator import LONGEST_STEP_S, Simulator
+from tumblers.diagnosis.what.conclusion import in_steps_of
+from tumblers.diagnosis.what.contender import of_nominal
+from tumblers.diagnosis.what.own_noise import against_itself
+from tumblers.diagnosis.what.search import Search
+from tumblers.diagnosis.what.step_credit import step_credit
 from tumblers.effects.contact_compliance import ContactCompliance
 from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.effects.size_error import SizeError

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.testing import assert_allclose, assert_array_equal
 
 from tumblers.dataset import Dataset, LabTrial, Track
-from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.floor import SHARED
-from tumblers.diagnosis.simulator import Simulator
-from tumblers.diagnosis.stretch import Stretch
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.floor import SHARED
+from tumblers.diagnosis.gap.simulator import Simulator
+from tumblers.diagnosis.gap.stretch import Stretch
 
 from .lab import PLANS, measure, plan, without
 

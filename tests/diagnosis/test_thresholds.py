@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.contender import of_nominal
-from tumblers.diagnosis.fitter import Fitter
-from tumblers.diagnosis.hypothesis import Hypothesis
-from tumblers.diagnosis.search import Search
-from tumblers.diagnosis.simulator import Simulator
-from tumblers.diagnosis.thresholds import CLEAR, beyond_thresholds
+from tumblers.diagnosis.fitting.fitter import Fitter
+from tumblers.diagnosis.fitting.hypothesis import Hypothesis
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.simulator import Simulator
+from tumblers.diagnosis.what.contender import of_nominal
+from tumblers.diagnosis.what.search import Search
+from tumblers.diagnosis.what.thresholds import CLEAR, beyond_thresholds
 from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.presets import drive
 

@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tumblers.diagnosis.attribute import _may_be_tolerated, _with_tolerated
-from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.contender import of_fit, of_nominal
-from tumblers.diagnosis.fitter import Fitter
-from tumblers.diagnosis.floor import TOLERANCES
-from tumblers.diagnosis.hypothesis import Hypothesis
-from tumblers.diagnosis.simulator import Simulator
-from tumblers.diagnosis.tolerated import _FACTORS, is_tolerated
+from tumblers.diagnosis.fitting.fitter import Fitter
+from tumblers.diagnosis.fitting.hypothesis import Hypothesis
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.floor import TOLERANCES
+from tumblers.diagnosis.gap.simulator import Simulator
+from tumblers.diagnosis.gap.tolerated import _FACTORS, is_tolerated
+from tumblers.diagnosis.what.attribute import _may_be_tolerated, _with_tolerated
+from tumblers.diagnosis.what.contender import of_fit, of_nominal
 from tumblers.effects import CATALOGUE
 from tumblers.effects.base import Effect
 from tumblers.effects.electrostatic_force import ElectrostaticForce

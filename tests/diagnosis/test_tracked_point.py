@@ -9,7 +9,7 @@ import pytest
 from tumblers import diagnose
 from tumblers.camera import TrackedPoint
 from tumblers.dataset import Dataset
-from tumblers.diagnosis.tracked_point import with_tracked_point
+from tumblers.diagnosis.what.tracked_point import with_tracked_point
 from tumblers.effects.base import Effect
 from tumblers.effects.center_of_mass_offset import CenterOfMassOffset
 from tumblers.effects.friction_coefficient import FrictionCoefficient
@@ -65,6 +65,6 @@ def test_what_an_offset_alone_does_not_explain_speaks_for_no_other_point(truth: 
 
 
 def test_where_no_position_was_seen_nothing_is_run(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tumblers.diagnosis.tracked_point._likeliest", None)
+    monkeypatch.setattr("tumblers.diagnosis.what.tracked_point._likeliest", None)
     assert with_tracked_point(plan(), KINDS, 1, quiet).sensor.tracked_point == "body_centre"
     assert with_tracked_point(unsaid("body_centre"), KINDS[1:], 1, quiet).sensor.tracked_point == "body_centre"

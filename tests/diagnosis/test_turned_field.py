@@ -7,7 +7,7 @@ from math import radians
 import numpy as np
 import pytest
 
-from tumblers.diagnosis.turned_field import TurnedField
+from tumblers.diagnosis.where.turned_field import TurnedField
 from tumblers.errors import InputError
 from tumblers.field import Field, RotatingField, StaticField
 from tumblers.presets import drive

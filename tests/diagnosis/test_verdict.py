@@ -8,14 +8,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tumblers.diagnosis.attribute import LAPSE, REFUSED, Attribution, _ranked
-from tumblers.diagnosis.comparison import Comparison, Residual
-from tumblers.diagnosis.conclusion import OPEN
-from tumblers.diagnosis.contender import Contender, of_fit, of_nominal
-from tumblers.diagnosis.fitter import Fitter
-from tumblers.diagnosis.hypothesis import Hypothesis
-from tumblers.diagnosis.simulator import Simulator
-from tumblers.diagnosis.verdict import judge, refused, ties
+from tumblers.diagnosis.fitting.fitter import Fitter
+from tumblers.diagnosis.fitting.hypothesis import Hypothesis
+from tumblers.diagnosis.gap.comparison import Comparison, Residual
+from tumblers.diagnosis.gap.simulator import Simulator
+from tumblers.diagnosis.what.attribute import LAPSE, REFUSED, Attribution, _ranked
+from tumblers.diagnosis.what.conclusion import OPEN
+from tumblers.diagnosis.what.contender import Contender, of_fit, of_nominal
+from tumblers.diagnosis.what.verdict import judge, refused, ties
 from tumblers.effects import get
 
 from .lab import PLANS, measure, plan

@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
-from tumblers.diagnosis.comparison import Comparison
-from tumblers.diagnosis.loss import weight_of
-from tumblers.diagnosis.pose import Path
-from tumblers.diagnosis.stretch import Stretch
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.loss import weight_of
+from tumblers.diagnosis.gap.pose import Path
+from tumblers.diagnosis.gap.stretch import Stretch
 
 Floats = NDArray[np.float64]
 

@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 
 from tests.diagnosis.lab import folded, measure, plan, thinned, without
 from tumblers.dataset import Dataset, Outcome
-from tumblers.diagnosis import built_floors
-from tumblers.diagnosis.comparison import Comparison, Residual
-from tumblers.diagnosis.floor import SHARED
-from tumblers.diagnosis.job import Job
-from tumblers.diagnosis.simulator import Simulator
+from tumblers.diagnosis.gap import built_floors
+from tumblers.diagnosis.gap.comparison import Comparison, Residual
+from tumblers.diagnosis.gap.floor import SHARED
+from tumblers.diagnosis.gap.job import Job
+from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.effects import get
 from tumblers.effects.base import Effect
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ..diagnosis.floor import TOLERANCES
+from ..diagnosis.gap.floor import TOLERANCES
 from .draw import CLEAR_SIGMA, LEAST_BESIDE_SIGMA, QUIET_SIGMA, QUIET_TRIAL_SIGMA, REPEATS
 from .jitter import DIMENSIONS, NUMBERS
 from .layout import STEADY_SIGMA

@@ -18,29 +18,29 @@ from ..effects.parameter import FORM_SHARE
 from ..errors import InputError, show
 from ..progress import OnPhase, phases
 from ..version import __version__
-from .attribute import LAPSE, PRIOR, REFUSED, Attribution, attribute, seen_from_the_best
-from .comparison import Comparison
-from .contender import Contender
 from .diagnosis import Diagnosis
-from .estimate import intervals
-from .fitter import Fitter
-from .floor import TOLERANCES
-from .held_out import HeldOut, folds, held_out, is_foretold, shrink
-from .hypothesis import SECOND
-from .job import Job
-from .localise import localise
-from .loss import robust_cost
-from .next_trial import in_one_step, next_trials
-from .overlay import overlays
-from .own_noise import lead_around
-from .posterior import samples
-from .predictive import is_right
+from .fitting.fitter import Fitter
+from .fitting.hypothesis import SECOND
+from .fitting.sandwich import MOST_FACTOR
+from .gap.comparison import Comparison
+from .gap.floor import TOLERANCES
+from .gap.job import Job
+from .gap.loss import robust_cost
+from .gap.predictive import is_right
+from .gap.simulator import Simulator
+from .how_far.held_out import HeldOut, folds, held_out, is_foretold, shrink
+from .how_far.overlay import overlays
 from .result import EffectEstimate, HeatMap, Interval, NextTrial, RankedHypothesis, Region, TrialFloor, Verdict
-from .sandwich import MOST_FACTOR
-from .simulator import Simulator
-from .tracked_point import with_tracked_point
-from .verdict import judge, refused, ties
-from .wrench import missing_wrench, wrench_regions
+from .what.attribute import LAPSE, PRIOR, REFUSED, Attribution, attribute, seen_from_the_best
+from .what.contender import Contender
+from .what.estimate import intervals
+from .what.own_noise import lead_around
+from .what.posterior import samples
+from .what.tracked_point import with_tracked_point
+from .what.verdict import judge, refused, ties
+from .what_next.next_trial import in_one_step, next_trials
+from .where.localise import localise
+from .where.wrench import missing_wrench, wrench_regions
 
 __all__ = ["diagnose"]
 

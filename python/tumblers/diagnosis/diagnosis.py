@@ -249,7 +249,7 @@ class Diagnosis:
         OSError
             The folder cannot be made or written to, or the disk is full.
         """
-        from .report import report_html
+        from .report.report import report_html
 
         texts = (self.to_json(), self.effects_toml(), self.scenario_toml(), report_html(self))
         folder = Path(directory)

@@ -7,9 +7,9 @@ from matplotlib.axes import Axes
 
 from ...plots.style import BLUE, axes_or_new
 from ..diagnosis import Diagnosis
-from ..phrase import unit_of
 from ..plausible import neutral_values, plausible_ranges
 from ..quantity import handy_unit, rounded, with_interval
+from ..wording.phrase import unit_of
 
 __all__ = ["plot_parameters"]
 

@@ -1,0 +1,1 @@
+"""A hypothesis and its fit: the objective, the descent and the deviations of what it found."""

@@ -1,0 +1,1 @@
+"""How far the gap shrinks on trials that no fit saw."""

@@ -1,0 +1,1 @@
+"""The trial that best separates what is still tied."""

@@ -1,0 +1,106 @@
+"""What a reader of a diagnosis should not overlook."""
+
+from __future__ import annotations
+
+from math import isfinite
+
+from ...effects.parameter import Nuisance
+from ..diagnosis import Diagnosis
+from ..plausible import neutral_values, plausible_ranges, turning_keys
+from ..quantity import percent
+from .phrase import meaning_of, title_of
+
+__all__ = ["cautions"]
+
+_FEW_TRIALS = 3
+_UNSURE = 0.8
+# Share of the range within which an estimate counts as being at its end.
+_AT_END = 0.01
+_MANY_LOST = 0.5
+# What the tolerances leave open of an outcome, in its noise: beyond so much it hardly counts.
+_MUCH_OPEN = 5.0
+# What a lab calls a nuisance that is none of the origin in the picture.
+_SLIPS: dict[Nuisance, str] = {"clock": "clock", "origin z": "zero of z"}
+
+
+def cautions(diagnosis: Diagnosis) -> tuple[str, ...]:
+    """Return sentences on what weakens a diagnosis, none where nothing does.
+
+    Parameters
+    ----------
+    diagnosis
+        What `diagnose` returned.
+    """
+    return (*_of_effects(diagnosis), *_of_trials(diagnosis))
+
+
+def _of_effects(diagnosis: Diagnosis) -> list[str]:
+    said = []
+    for effect in diagnosis.effects:
+        if effect.probability < _UNSURE:
+            said.append(
+                f"{title_of(effect.name)} has a probability of {percent(effect.probability)} only: see the ranking."
+            )
+        ranges, neutral = plausible_ranges(diagnosis, effect.name), neutral_values(effect.name)
+        turning = turning_keys(effect.name)
+        for key, interval in effect.parameters.items():
+            # An angle that turns on has no end.
+            if key in turning:
+                continue
+            low, high = ranges.get(key, (-float("inf"), float("inf")))
+            margin = _AT_END * (high - low)
+            if isfinite(margin) and not low + margin <= interval.estimate <= high - margin:
+                # A range can end at the neutral value, where nothing is wrong with it.
+                if interval.low <= neutral[key] <= interval.high:
+                    continue
+                said.append(
+                    f"{meaning_of(effect.name, key)} is at the end of its plausible range: the true cause may be "
+                    "another one that looks similar."
+                )
+        if effect.name == "camera_calibration":
+            said.append("a camera that is off is a gap of the measurement: calibrate it before any physics is added.")
+    likeliest = diagnosis.ranking[0]
+    if diagnosis.verdict == "no_gap" and likeliest.effects:
+        names = " with ".join(title_of(name) for name in likeliest.effects)
+        said.append(
+            f"{names} has a probability of {percent(likeliest.probability)}, but the nominal model follows the data to "
+            "within noise too: less noise or other trials would tell."
+        )
+    if diagnosis.verdict == "unexplained" and diagnosis.effects:
+        said.append("the partial cause may be wrong altogether: it only follows the data better than the others.")
+    return said
+
+
+def _of_trials(diagnosis: Diagnosis) -> list[str]:
+    said = []
+    trials = diagnosis.dataset.trials
+    if len(trials) < _FEW_TRIALS:
+        count = "one trial" if len(trials) == 1 else f"{len(trials)} trials"
+        said.append(f"{count} can hardly show that an effect carries over to others.")
+    if all(trial.track is None for trial in trials):
+        said.append("there are no tracks: outcomes alone leave many effects possible.")
+    lost = [f.trial for f in diagnosis.floors if f.frames > 0 and f.lost > _MANY_LOST * f.frames]
+    if lost:
+        said.append(f"more than half of the frames are lost in {', '.join(lost)}.")
+    empty = [f.trial for f in diagnosis.floors if f.compared == 0]
+    if empty:
+        said.append(f"nothing could be compared in {', '.join(empty)}.")
+    # Where all is followed to within noise, it does not matter which end noise took it to.
+    off = [f.trial for f in diagnosis.floors if f.at_tolerance] if diagnosis.verdict != "no_gap" else []
+    if off:
+        names = sorted({_SLIPS.get(name, "origin") for f in diagnosis.floors for name in f.at_tolerance})
+        said.append(
+            f"the {' and the '.join(names)} of {', '.join(off)} had to be taken to the end of what [sensor] allows: is "
+            "time zero the field's start, the origin the robot's start, and z zero on the substrate, in each of them? "
+            "A zero that is off in one trial and not in another looks like physics."
+        )
+    rough = [f.trial for f in diagnosis.floors if f.numerical_sigmas > 1.0]
+    if rough:
+        said.append(f"the simulation's own error is above the noise in {', '.join(rough)}, and counted as noise there.")
+    open_ = [f.trial for f in diagnosis.floors if f.frames == 0 and f.tolerance_sigmas > _MUCH_OPEN]
+    if open_:
+        said.append(
+            f"the nominal numbers' tolerances alone move the outcome of {', '.join(open_)} by more than {_MUCH_OPEN:g} "
+            "times its noise: it counts little."
+        )
+    return said
