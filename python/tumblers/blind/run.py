@@ -7,7 +7,7 @@ from collections.abc import Collection
 from concurrent.futures import Future, as_completed
 from os import PathLike
 from pathlib import Path
-from time import perf_counter
+from time import perf_counter, process_time
 from typing import NamedTuple
 
 from ..atomic import write_files
@@ -104,7 +104,7 @@ def _diagnose(folder: Path, threads: int) -> bool:
 
     # It is of what is written here now.
     (folder / REPEAT).unlink(missing_ok=True)
-    start = perf_counter()
+    start, worked = perf_counter(), process_time()
     files: dict[Path, bytes | memoryview] = {}
     error = None
     try:
@@ -116,6 +116,7 @@ def _diagnose(folder: Path, threads: int) -> bool:
         "format": RECORD_FORMAT,
         "version": __version__,
         "seconds": perf_counter() - start,
+        "processor_s": process_time() - worked,
         "threads": threads,
         "error": error,
     }
