@@ -14,11 +14,11 @@ from tumblers.diagnosis.gap.job import Job
 from tumblers.diagnosis.gap.simulator import LONGEST_STEP_S, Simulator
 from tumblers.diagnosis.result import NextTrial
 from tumblers.diagnosis.what.attribute import attribute
-from tumblers.diagnosis.what.posterior import samples
 from tumblers.diagnosis.what_next.candidate import Candidate, candidates, turned
 from tumblers.diagnosis.what_next.foretold import CLIMBS, RUNS, SLIDES, STAYS, Said, foretell
 from tumblers.diagnosis.what_next.information import information
 from tumblers.diagnosis.what_next.next_trial import in_one_step, next_trials
+from tumblers.diagnosis.what_next.posterior import samples
 from tumblers.effects import get
 from tumblers.effects.base import Effect
 from tumblers.effects.contact_compliance import ContactCompliance

@@ -11,8 +11,8 @@ from tumblers.diagnosis.gap.job import Job
 from tumblers.diagnosis.gap.pose import body_axis, tilt_of
 from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.diagnosis.result import MissingWrench
-from tumblers.diagnosis.where.wrench import missing_wrench, wrench_regions
-from tumblers.diagnosis.where.wrench_maps import mapped
+from tumblers.diagnosis.where.wrench import missing_wrench
+from tumblers.diagnosis.where.wrench_maps import mapped, wrench_regions
 from tumblers.diagnosis.where.wrench_means import Windows
 from tumblers.diagnosis.where.wrench_pieces import along, at_rest, within_cycles
 from tumblers.field import TableField

@@ -13,9 +13,9 @@ from tumblers.diagnosis.gap.comparison import Comparison
 from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.diagnosis.what.beginnings import from_beginnings, from_its_own_beginning, promise
 from tumblers.diagnosis.what.contender import of_fit
-from tumblers.diagnosis.what.own_noise import NEAR, settled_at
+from tumblers.diagnosis.what.margins import CLEAR, NEAR
+from tumblers.diagnosis.what.own_noise import settled_at
 from tumblers.diagnosis.what.search import Search
-from tumblers.diagnosis.what.thresholds import CLEAR
 from tumblers.effects.magnetization_strength import MagnetizationStrength
 from tumblers.effects.surface_roughness import SurfaceRoughness
 

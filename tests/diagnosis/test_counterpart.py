@@ -16,9 +16,9 @@ from tumblers.diagnosis.gap.comparison import Comparison
 from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.diagnosis.what.contender import Contender, of_fit, of_nominal
 from tumblers.diagnosis.what.counterpart import counterparts, with_counterparts
+from tumblers.diagnosis.what.margins import CLEAR
 from tumblers.diagnosis.what.own_noise import settled_at
 from tumblers.diagnosis.what.search import Search
-from tumblers.diagnosis.what.thresholds import CLEAR
 from tumblers.effects.base import Effect
 from tumblers.effects.camera_calibration import CameraCalibration
 from tumblers.effects.friction_anisotropy import FrictionAnisotropy

@@ -14,9 +14,8 @@ from tumblers.diagnosis import diagnose
 from tumblers.diagnosis.fitting.hypothesis import Hypothesis
 from tumblers.diagnosis.gap.floor import TOLERANCES
 from tumblers.diagnosis.gap.simulator import Simulator
-from tumblers.diagnosis.gap.tolerated import least_deviation
-from tumblers.diagnosis.what.attribute import SIDE
-from tumblers.diagnosis.what.estimate import _ends, _gradients, _whole_way
+from tumblers.diagnosis.what.estimate import SIDE, _ends, _gradients, _whole_way
+from tumblers.diagnosis.what.tolerated import least_deviation
 from tumblers.effects.magnetization_misalignment import MagnetizationMisalignment
 from tumblers.effects.magnetization_strength import MagnetizationStrength
 from tumblers.effects.size_error import SizeError

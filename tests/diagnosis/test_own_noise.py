@@ -8,10 +8,10 @@ from typing import Any
 
 import pytest
 
-from tumblers.diagnosis.fitting.hypothesis import SECOND
 from tumblers.diagnosis.gap.comparison import Comparison
 from tumblers.diagnosis.what import own_noise
 from tumblers.diagnosis.what.contender import Contender
+from tumblers.diagnosis.what.margins import SECOND
 from tumblers.diagnosis.what.own_noise import again, against_the_best, each_by_itself, settled
 
 # Against the noise around another, and around itself.

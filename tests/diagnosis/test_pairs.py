@@ -14,9 +14,9 @@ from tumblers.diagnosis.fitting.hypothesis import Hypothesis
 from tumblers.diagnosis.gap.comparison import Comparison, Residual
 from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.diagnosis.what.contender import of_fit, of_nominal
+from tumblers.diagnosis.what.margins import CLEAR
 from tumblers.diagnosis.what.own_noise import settled_at
 from tumblers.diagnosis.what.pairs import Pairs, _lines, firsts, nested
-from tumblers.diagnosis.what.thresholds import CLEAR
 from tumblers.effects.base import Effect
 from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.effects.magnetization_strength import MagnetizationStrength

@@ -9,7 +9,7 @@ from scipy.optimize import minimize_scalar
 
 from tumblers.diagnosis.fitting.fit import Fit
 from tumblers.diagnosis.fitting.hypothesis import Hypothesis
-from tumblers.diagnosis.what.posterior import _needed
+from tumblers.diagnosis.what_next.posterior import _needed
 from tumblers.effects.friction_coefficient import FrictionCoefficient
 
 from .lab import NOTHING, coarse_lab

@@ -11,7 +11,8 @@ from tumblers.diagnosis.fitting.fitter import Fitter
 from tumblers.diagnosis.gap.comparison import Comparison
 from tumblers.diagnosis.gap.simulator import LONGEST_STEP_S, Simulator
 from tumblers.diagnosis.what.contender import Contender, of_nominal
-from tumblers.diagnosis.what.own_noise import NEAR, OWN, beside
+from tumblers.diagnosis.what.margins import NEAR
+from tumblers.diagnosis.what.own_noise import OWN, beside
 from tumblers.diagnosis.what.pair_search import PairSearch
 from tumblers.diagnosis.what.pairs import Pairs
 from tumblers.diagnosis.what.search import Search

@@ -12,11 +12,11 @@ from tumblers.diagnosis.fitting.hypothesis import Hypothesis
 from tumblers.diagnosis.gap.comparison import Comparison
 from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.diagnosis.what.contender import Contender, of_fit
+from tumblers.diagnosis.what.margins import CLEAR
 from tumblers.diagnosis.what.occam import unneeded
 from tumblers.diagnosis.what.own_noise import POLISH_POINTS, by_itself, settled_at
 from tumblers.diagnosis.what.pairs import Pairs
 from tumblers.diagnosis.what.sparse import as_far
-from tumblers.diagnosis.what.thresholds import CLEAR
 from tumblers.effects.base import Effect
 from tumblers.effects.contact_compliance import ContactCompliance
 from tumblers.effects.magnetization_strength import MagnetizationStrength

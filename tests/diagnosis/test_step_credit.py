@@ -10,8 +10,8 @@ from tumblers.diagnosis.fitting.hypothesis import Hypothesis
 from tumblers.diagnosis.gap.comparison import Comparison
 from tumblers.diagnosis.gap.job import Job
 from tumblers.diagnosis.gap.simulator import LONGEST_STEP_S, Simulator
-from tumblers.diagnosis.what.conclusion import in_steps_of
 from tumblers.diagnosis.what.contender import of_nominal
+from tumblers.diagnosis.what.last_fits import in_steps_of
 from tumblers.diagnosis.what.own_noise import against_itself
 from tumblers.diagnosis.what.search import Search
 from tumblers.diagnosis.what.step_credit import step_credit

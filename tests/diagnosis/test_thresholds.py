@@ -10,8 +10,9 @@ from tumblers.diagnosis.fitting.hypothesis import Hypothesis
 from tumblers.diagnosis.gap.comparison import Comparison
 from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.diagnosis.what.contender import of_nominal
+from tumblers.diagnosis.what.margins import CLEAR
 from tumblers.diagnosis.what.search import Search
-from tumblers.diagnosis.what.thresholds import CLEAR, beyond_thresholds
+from tumblers.diagnosis.what.thresholds import beyond_thresholds
 from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.presets import drive
 

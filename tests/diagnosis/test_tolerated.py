@@ -12,9 +12,9 @@ from tumblers.diagnosis.fitting.hypothesis import Hypothesis
 from tumblers.diagnosis.gap.comparison import Comparison
 from tumblers.diagnosis.gap.floor import TOLERANCES
 from tumblers.diagnosis.gap.simulator import Simulator
-from tumblers.diagnosis.gap.tolerated import _FACTORS, is_tolerated
 from tumblers.diagnosis.what.attribute import _may_be_tolerated, _with_tolerated
 from tumblers.diagnosis.what.contender import of_fit, of_nominal
+from tumblers.diagnosis.what.tolerated import _FACTORS, is_tolerated
 from tumblers.effects import CATALOGUE
 from tumblers.effects.base import Effect
 from tumblers.effects.electrostatic_force import ElectrostaticForce

@@ -13,8 +13,8 @@ from tumblers.diagnosis.fitting.hypothesis import Hypothesis
 from tumblers.diagnosis.gap.comparison import Comparison, Residual
 from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.diagnosis.what.attribute import LAPSE, REFUSED, Attribution, _ranked
-from tumblers.diagnosis.what.conclusion import OPEN
 from tumblers.diagnosis.what.contender import Contender, of_fit, of_nominal
+from tumblers.diagnosis.what.margins import OPEN
 from tumblers.diagnosis.what.verdict import judge, refused, ties
 from tumblers.effects import get
 

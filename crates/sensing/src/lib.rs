@@ -3,7 +3,7 @@
 //! A path is looked up (`path`), seen by a camera (`pose`, `camera`), compared with a trial's measurements and whitened by
 //! their noise (`channel`, `whiten`, `measured`), and the nuisances that all trials of a dataset share are fitted
 //! (`nuisances`, `bounded`, `comparison`). The equations stand in these files; plain NumPy has them once more as the specification: the
-//! channels in `python/tumblers/diagnosis/reading.py`, the fit in `tests/parity/nuisances.py`.
+//! channels in `python/tumblers/diagnosis/gap/reading.py`, the fit in `tests/parity/nuisances.py`.
 //!
 //! Lengths are in m, times in s, angles in rad.
 

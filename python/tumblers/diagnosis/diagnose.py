@@ -20,7 +20,6 @@ from ..progress import OnPhase, phases
 from ..version import __version__
 from .diagnosis import Diagnosis
 from .fitting.fitter import Fitter
-from .fitting.hypothesis import SECOND
 from .fitting.sandwich import MOST_FACTOR
 from .gap.comparison import Comparison
 from .gap.floor import TOLERANCES
@@ -34,13 +33,15 @@ from .result import EffectEstimate, HeatMap, Interval, NextTrial, RankedHypothes
 from .what.attribute import LAPSE, PRIOR, REFUSED, Attribution, attribute, seen_from_the_best
 from .what.contender import Contender
 from .what.estimate import intervals
+from .what.margins import SECOND
 from .what.own_noise import lead_around
-from .what.posterior import samples
 from .what.tracked_point import with_tracked_point
 from .what.verdict import judge, refused, ties
 from .what_next.next_trial import in_one_step, next_trials
+from .what_next.posterior import samples
 from .where.localise import localise
-from .where.wrench import missing_wrench, wrench_regions
+from .where.wrench import missing_wrench
+from .where.wrench_maps import wrench_regions
 
 __all__ = ["diagnose"]
 

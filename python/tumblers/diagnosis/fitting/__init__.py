@@ -1,1 +1,1 @@
-"""A hypothesis and its fit: the objective, the descent and the deviations of what it found."""
+"""A hypothesis and its fit: the objective, the descent from a start, and how what trials pull scatters."""

@@ -15,16 +15,12 @@ from ...effects.parameter import Nuisance
 from ...errors import EffectError, InputError, TumblersError
 from ...scenario import Scenario
 
-__all__ = ["PRIOR_SIGMA", "SECOND", "Hypothesis"]
+__all__ = ["PRIOR_SIGMA", "Hypothesis"]
 
 Floats = NDArray[np.float64]
 
 # A coordinate is expected within about twice this share of its range around neutral.
 PRIOR_SIGMA = 0.5
-# ln of the odds that a second effect must win beside: one effect in a form that is not the catalogue's leaves what a
-# second could explain as well. Chosen from twelve datasets with a known truth in which two effects were named: where
-# one was at work the second had won 2.4 to 7.4 over the best single one, where two were 20 or more.
-SECOND = 10.0
 # How far beside a coordinate is.
 _BESIDE = 1e-6
 

@@ -24,7 +24,7 @@ from ..gap.job import Job
 from ..gap.loss import robust_cost
 from ..result import Gap, Interval
 from ..what.contender import Contender
-from ..what.thresholds import CLEAR
+from ..what.margins import CLEAR
 
 __all__ = ["HeldOut", "folds", "held_out", "is_foretold", "shrink"]
 

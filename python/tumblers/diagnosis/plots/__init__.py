@@ -1,4 +1,4 @@
-"""Figures of a diagnosis: without Axes or Figure of the caller's, every function draws on a new figure of pyplot."""
+"""Figures of a diagnosis: without Axes or Figure of the caller's, every plot is drawn on a new figure of pyplot."""
 
 from .figures import Figures
 from .gap import plot_gap

@@ -1,1 +1,1 @@
-"""What causes the gap: the search over the catalogue, what is tied, the numbers, the probabilities and the verdict."""
+"""What causes the gap: the search over the catalogue, the evidence, what is tied, the intervals and the verdict."""

@@ -32,18 +32,18 @@ from ...progress import OnPhase
 from ...scenario import Scenario
 from ..fitting.fit import Fit
 from ..fitting.fitter import Fitter
-from ..fitting.hypothesis import SECOND
 from ..gap.comparison import Comparison
 from ..gap.predictive import is_right
-from ..gap.tolerated import is_tolerated, tolerated
 from .both_noises import by_both_noises
-from .conclusion import OPEN, in_steps_of
 from .contender import Contender, of_fit, of_nominal
+from .last_fits import in_steps_of
+from .margins import OPEN, SECOND
 from .occam import log_occam
 from .own_noise import by_itself
 from .search import Search
+from .tolerated import is_tolerated, tolerated
 
-__all__ = ["LAPSE", "PRIOR", "REFUSED", "SIDE", "Attribution", "attribute", "seen_from_the_best"]
+__all__ = ["LAPSE", "PRIOR", "REFUSED", "Attribution", "attribute", "seen_from_the_best"]
 
 Floats = NDArray[np.float64]
 
@@ -59,8 +59,6 @@ LAPSE = 0.12
 REFUSED = 0.02
 # Trial points of the last fit of the best, from where it is: intervals are no better than it.
 _LAST_POINTS = 12
-# Standard deviations to either end of a 90 % interval.
-SIDE = 1.645
 # How much of a fit's Gaussian is looked at for a point that is within the nominal numbers' tolerances.
 _WITHIN = 0.9
 # Of equals the one that the catalogue lists first is preferred.

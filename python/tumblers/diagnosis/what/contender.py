@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from ...effects.base import Effect
 from ..fitting.fit import Fit
 from ..fitting.fitter import Fitter
-from ..fitting.hypothesis import SECOND
 from ..gap.comparison import Comparison, Residual
+from .margins import SECOND
 from .step_credit import step_credit
 
 __all__ = ["Contender", "likeliest", "likeliest_first", "of_fit", "of_nominal", "parsimonious_total"]

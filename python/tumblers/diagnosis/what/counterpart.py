@@ -31,8 +31,8 @@ from ..fitting.fitter import Fitter
 from ..fitting.hypothesis import Hypothesis
 from ..gap.predictive import is_wanting
 from .contender import Contender, likeliest, likeliest_first
-from .own_noise import ENOUGH, IDLE_POINTS, against_itself, settled_at
-from .pairs import AS_GOOD
+from .margins import AS_GOOD, ENOUGH
+from .own_noise import IDLE_POINTS, against_itself, settled_at
 from .step_credit import step_credit
 
 __all__ = ["Counterpart", "as_good", "counterparts", "with_counterparts"]

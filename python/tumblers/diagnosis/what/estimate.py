@@ -27,19 +27,21 @@ from ..fitting.fit import Fit
 from ..fitting.fitter import Fitter
 from ..fitting.hypothesis import Hypothesis
 from ..fitting.sandwich import misfit_factors
-from ..gap.tolerated import least_deviation
 from ..result import Interval
-from .attribute import SIDE, Attribution
+from .attribute import Attribution
 from .contender import Contender
+from .tolerated import least_deviation
 
-__all__ = ["intervals"]
+__all__ = ["SIDE", "intervals"]
 
 Floats = NDArray[np.float64]
-# A parameter and a direction; ways along its ridge are in standard deviations.
+# A parameter and a direction; ways along its ridge are in standard deviations, widened where they are.
 _Side = tuple[int, float]
 
-# Where the objective is measured first, in ways to the ends that Laplace's Gaussian would have; and how often the way
-# is doubled where it has not risen there.
+# Standard deviations to either end of a 90 % interval.
+SIDE = 1.645
+# Where the objective is measured first, in ways to the ends that a Gaussian would have; and how often the way is
+# doubled where it has not risen there.
 _WAYS, _DOUBLINGS = (0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0), 4
 # How often the stretch that holds an end is halved.
 _HALVINGS = 5

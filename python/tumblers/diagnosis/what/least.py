@@ -23,7 +23,7 @@ from ...effects.base import Effect
 from ..fitting.fitter import Fitter
 from ..fitting.hypothesis import Hypothesis
 from ..gap.comparison import Residual
-from .thresholds import CLEAR
+from .margins import CLEAR
 
 __all__ = ["least"]
 

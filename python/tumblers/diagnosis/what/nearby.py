@@ -15,8 +15,8 @@ from ..fitting.fit import Fit
 from ..fitting.fitter import Fitter
 from .contender import Contender, likeliest_first
 from .least import least
-from .own_noise import ENOUGH, settled_at
-from .thresholds import CLEAR
+from .margins import CLEAR, ENOUGH
+from .own_noise import settled_at
 
 __all__ = ["all_shaken", "shaken"]
 

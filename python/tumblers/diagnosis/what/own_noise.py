@@ -20,13 +20,11 @@ from ..fitting.fit import Fit
 from ..fitting.fitter import Fitter
 from ..fitting.hypothesis import Hypothesis
 from .contender import Contender, likeliest_first, of_fit, of_nominal, parsimonious_total
-from .thresholds import CLEAR
+from .margins import CLEAR, ENOUGH, NEAR
 
 __all__ = [
-    "ENOUGH",
     "IDLE_POINTS",
     "MOST_OWN",
-    "NEAR",
     "OWN",
     "POLISH_POINTS",
     "again",
@@ -44,8 +42,6 @@ Floats = NDArray[np.float64]
 
 # Trial points of a fit that has only to follow another noise, and of a good one that is taken further.
 IDLE_POINTS, POLISH_POINTS = 2, 6
-# What is likelier by so much, in ln, asks for another round.
-ENOUGH = 0.3125
 # Effects that are held against their own noise before one counts as best, and how many where that gains much.
 OWN, MOST_OWN = 4, 6
 # How many of other fits are (the defaults of `settled`), and how often it is measured after a further fit at most.
@@ -53,8 +49,8 @@ _SETTLED, _ROUNDS = 2, 2
 # What another may gain by its own noise, over the most that one has gained: at one threshold, in a dataset whose truth
 # was known, five effects gained 640 to 790.
 _AS_MUCH = 1.5
-# What comes so near to the best, in ln, is held against its own noise, so many at most.
-NEAR, _MOST_NEAR = 18.75, 6
+# What comes near to the best is held against its own noise, so many at most.
+_MOST_NEAR = 6
 
 
 def again(fitter: Fitter, contenders: Sequence[Contender]) -> list[Contender]:

@@ -38,7 +38,7 @@ _ROUNDS = 2
 
 
 def is_enough(comparison: Comparison, contenders: Sequence[Contender]) -> bool:
-    """Return whether the likeliest leaves no gap: one effect none that is wanting, two none at all.
+    """Return whether the likeliest leaves no gap that is wanting, or has two effects and passes the predictive test.
 
     Parameters
     ----------

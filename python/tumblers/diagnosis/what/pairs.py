@@ -17,17 +17,14 @@ from ..fitting.fitter import Fitter
 from ..fitting.hypothesis import Hypothesis
 from .contender import Contender, likeliest, likeliest_first, of_fit
 from .least import least
+from .margins import AS_GOOD, CLEAR
 from .own_noise import POLISH_POINTS, by_itself
 from .step_credit import step_credit
-from .thresholds import CLEAR
 
-__all__ = ["AS_GOOD", "Pairs", "firsts", "nested"]
+__all__ = ["Pairs", "firsts", "nested"]
 
 Floats = NDArray[np.float64]
 
-# Another effect is fitted in the place of one where it leaves no more than this share of what that takes off the
-# objective.
-AS_GOOD = 0.5
 # A first leaves no more than so much of the best one's objective beyond it.
 _NEAR_BEST = 0.5
 # Seconds that are fitted with each first; singles that are joined two and two, joints that are fitted, and shares of

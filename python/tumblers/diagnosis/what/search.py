@@ -20,16 +20,17 @@ from ..fitting.fitter import Fitter
 from ..fitting.hypothesis import Hypothesis
 from ..gap.predictive import is_right, is_wanting
 from .beginnings import MANY, beginning, from_beginnings, promise
-from .conclusion import concluded, resolved
 from .contender import Contender, likeliest, likeliest_first, of_fit, of_nominal
 from .counterpart import with_counterparts
 from .guided import found_again
+from .last_fits import concluded, resolved
+from .margins import AS_GOOD, CLEAR, NEAR
 from .nearby import all_shaken, shaken
-from .own_noise import IDLE_POINTS, MOST_OWN, NEAR, OWN, again, by_itself, settled
+from .own_noise import IDLE_POINTS, MOST_OWN, OWN, again, by_itself, settled
 from .pair_search import PairSearch, is_enough
-from .pairs import AS_GOOD, firsts, nested
+from .pairs import firsts, nested
 from .refined import refined, to_refine
-from .thresholds import CLEAR, beyond_thresholds
+from .thresholds import beyond_thresholds
 
 __all__ = ["Search"]
 

@@ -15,13 +15,12 @@ from numpy.typing import NDArray
 from ..fitting.fitter import Fitter
 from ..fitting.hypothesis import Hypothesis
 from ..gap.comparison import Residual
+from .margins import CLEAR
 
-__all__ = ["CLEAR", "beyond_thresholds"]
+__all__ = ["beyond_thresholds"]
 
 Floats = NDArray[np.float64]
 
-# What is likelier by so much, in ln, is worth another look.
-CLEAR = 1.25
 # Shares of the way from neutral to each end of a range that are tried, how often the stretches beside the best of them
 # are halved (where nothing moves at first, where it moves at once), for effects with no more parameters than this, for
 # each of so many trials that are farthest off; the best points that are kept.

@@ -24,8 +24,8 @@ from ..gap.comparison import Comparison
 from ..gap.predictive import is_wanting
 from ..gap.simulator import Simulator
 from .contender import likeliest, of_nominal
+from .margins import CLEAR
 from .own_noise import against_itself
-from .thresholds import CLEAR
 
 __all__ = ["with_tracked_point"]
 

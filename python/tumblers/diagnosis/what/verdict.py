@@ -10,8 +10,8 @@ from ..gap.comparison import Comparison
 from ..gap.predictive import is_right
 from ..result import Verdict
 from .attribute import Attribution
-from .conclusion import OPEN
 from .contender import Contender
+from .margins import OPEN
 
 __all__ = ["judge", "refused", "ties"]
 

@@ -1,1 +1,1 @@
-"""Where the gap lies: by channel, trial, time, phase, place and contact mode, and the wrench that is missing."""
+"""Where the gap lies, in which part of the data an effect acts, and the wrench that is missing."""

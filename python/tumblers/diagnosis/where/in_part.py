@@ -35,11 +35,11 @@ from ...progress import OnPhase
 from ..gap.comparison import Comparison, Residual
 from ..gap.job import Job
 from ..gap.pose import Path
-from ..gap.remainder import left_of
 from ..result import Region
 from .acting import DRIVE, TURN, words_of
 from .part_axis import Ends, Tried, along_y, cycle, from_a_moment
 from .part_runs import Runs
+from .remainder import left_of
 
 __all__ = ["acts_in_part"]
 

@@ -10,10 +10,10 @@ import numpy as np
 from ...progress import OnPhase
 from ..gap.comparison import Comparison, Residual
 from ..gap.job import Interlude, Job
-from ..gap.remainder import left_of
 from ..gap.simulator import rows_per_s
 from .onset import CLEAR_LN
 from .part_axis import Axis, Tried
+from .remainder import left_of
 
 __all__ = ["Runs"]
 

@@ -27,10 +27,10 @@ from ..gap.comparison import Comparison, Residual
 from ..gap.job import Job
 from ..gap.loss import HUBER
 from ..gap.pose import Path
-from ..gap.remainder import left_by, nuisance_columns, nuisances_present
 from ..result import MissingWrench
 from .cells import MODES
-from .wrench_maps import mapped, wrench_regions
+from .remainder import left_by, nuisance_columns, nuisances_present
+from .wrench_maps import mapped
 from .wrench_means import Windows
 from .wrench_pieces import HALF_A_CYCLE, Pieces, along, at_rest, within_cycles
 from .wrench_trial import (
@@ -40,7 +40,7 @@ from .wrench_trial import (
     prior_sigma,
 )
 
-__all__ = ["missing_wrench", "wrench_regions"]
+__all__ = ["missing_wrench"]
 
 Floats = NDArray[np.float64]
 

@@ -15,14 +15,15 @@ from .cells import MODES
 from .wrench_means import Windows, means
 from .wrench_pieces import HALF_A_CYCLE
 
-__all__ = ["mapped", "wrench_regions"]
+__all__ = ["SIGNIFICANT", "mapped", "wrench_regions"]
 
 _PHASES = 8
 _PLACES = 6
 # What places are told apart by at most, over all of them, m.
 _LEAST_M = 1e-6
 _COMPONENTS = ("x", "y", "z")
-_SIGNIFICANT = 3.0
+# A component is missing from this many standard deviations on.
+SIGNIFICANT = 3.0
 # A field turns if this share of its strength is ever across its strongest: a logged ramp is not quite straight.
 _ACROSS = 0.1
 
@@ -94,7 +95,7 @@ def wrench_regions(missing: MissingWrench) -> tuple[Region, ...]:
     excess = np.maximum(np.sum(scaled**2 - 1.0, axis=0), 0.0)
     greatest = np.max(np.abs(scaled), axis=0)
     regions = []
-    for component in np.flatnonzero(greatest > _SIGNIFICANT):
+    for component in np.flatnonzero(greatest > SIGNIFICANT):
         share = float(excess[component] / max(float(excess.sum()), 1e-12))
         axis = "missing_force" if component < 3 else "missing_torque"
         regions.append(Region(axis, share, value=_COMPONENTS[component % 3], sigmas=float(greatest[component])))

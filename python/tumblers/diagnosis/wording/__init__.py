@@ -1,1 +1,1 @@
-"""A diagnosis in plain words."""
+"""Words for a diagnosis: names and units, the conditions of trials, cautions and the summary."""

@@ -14,6 +14,7 @@ from ...field import RotatingField
 from ..diagnosis import Diagnosis
 from ..quantity import handy_unit, percent, rounded, sigmas, with_interval, with_sigma
 from ..result import EffectEstimate, Gap, NextTrial, Region
+from ..where.wrench_maps import SIGNIFICANT
 from .caution import cautions
 from .condition import condition_of, condition_of_table
 from .phrase import meaning_of, phrase_of, title_of, unit_of
@@ -41,8 +42,6 @@ _SPREAD = 0.5
 _MOST_REGIONS, _MOST_VALUES, _MOST_RULED_OUT = 3, 4, 6
 # A trial that tells so many times as much is worth a lab's trouble.
 _MUCH_MORE = 2.0
-# A missing force is named from this many standard deviations on.
-_SIGNIFICANT = 3.0
 _WRENCH = (("force", "N", 0), ("torque", "N m", 3))
 _MEASURED = ("time_s", "position_x_m", "position_y_m")
 _END_SHARE = 0.2
@@ -346,7 +345,7 @@ def _missing(diagnosis: Diagnosis) -> Iterator[str]:
 def _strongest(by: Mapping[str, tuple[Floats, Floats]], first: int) -> tuple[str, int, float, float] | None:
     """Return the component of a force or a torque that is farthest from zero, in standard deviations."""
     best: tuple[str, int, float, float] | None = None
-    highest = _SIGNIFICANT
+    highest = SIGNIFICANT
     for label, (wrench, sigma) in by.items():
         for axis in range(3):
             value, error = float(wrench[first + axis]), float(sigma[first + axis])

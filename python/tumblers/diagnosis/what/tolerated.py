@@ -7,7 +7,7 @@ from math import hypot
 
 from ...effects.base import Effect
 from ...scenario import Scenario
-from .floor import MOST_OFF, TOLERANCES
+from ..gap.floor import MOST_OFF, TOLERANCES
 
 __all__ = ["is_tolerated", "least_deviation", "tolerated"]
 

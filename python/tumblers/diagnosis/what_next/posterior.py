@@ -28,9 +28,9 @@ from ...effects.base import Effect
 from ..fitting.fit import Fit
 from ..fitting.fitter import Fitter
 from ..fitting.hypothesis import PRIOR_SIGMA, Hypothesis
-from .attribute import Attribution
-from .contender import Contender
-from .occam import seldom_needed
+from ..what.attribute import Attribution
+from ..what.contender import Contender
+from ..what.occam import seldom_needed
 
 __all__ = ["samples"]
 

@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...effects.parameter import Nuisance
-from .comparison import Comparison, Residual
-from .loss import HUBER, robust_cost
-from .pose import Path
+from ..gap.comparison import Comparison, Residual
+from ..gap.loss import HUBER, robust_cost
+from ..gap.pose import Path
 
 __all__ = ["left_by", "left_of", "nuisance_columns", "nuisances_present"]
 

@@ -1,7 +1,8 @@
 """`concluded`: every contender in the steps, against the noise, and fitted as far, that what is concluded asks for.
 
-The steps are short enough for the leader, who may change by it. What comes near the best is held against the noise
-around itself, what may be as good is fitted as far as the best, and what says the same is lent the best's noise.
+The steps are chosen for the leader, and chosen anew where one that leads later cannot run in them. What comes near the
+best is held against the noise around itself, what may be as good is fitted as far as the best, and what says the same
+is lent the best's noise.
 """
 
 from __future__ import annotations
@@ -13,17 +14,15 @@ from ..fitting.fitter import Fitter
 from ..fitting.hypothesis import Hypothesis
 from .contender import Contender, likeliest, of_nominal, parsimonious_total
 from .counterpart import as_good
+from .margins import AS_GOOD, CLEAR, OPEN
 from .own_noise import MOST_OWN, OWN, again, against_the_best, by_itself, each_by_itself, settled, settled_at
-from .pairs import AS_GOOD, nested
+from .pairs import nested
 from .sparse import as_far
-from .thresholds import CLEAR
 
-__all__ = ["OPEN", "concluded", "in_steps_of", "resolved"]
+__all__ = ["concluded", "in_steps_of", "resolved"]
 
-# What is less than about e^12 behind the best, or as good by `AS_GOOD`, is fitted as far, so many single effects and
-# pairs at most: a total moves by some e^3 with the place around which its noise is measured, and by more with where a
-# fit stopped.
-OPEN, _EQUALLY_FAR, _PAIRS_EQUALLY_FAR = 12.0, 3, 4
+# What is open, or as good by `AS_GOOD`, is fitted as far, so many single effects and pairs at most.
+_EQUALLY_FAR, _PAIRS_EQUALLY_FAR = 3, 4
 
 
 def in_steps_of(fitter: Fitter, leader: Contender, contenders: Sequence[Contender], tell: OnPhase) -> list[Contender]:
@@ -62,7 +61,7 @@ def concluded(fitter: Fitter, nominal: Contender, contenders: Sequence[Contender
     while True:
         nominal, made = resolved(fitter, nominal, contenders, tell)
         contenders = _equally_far(fitter, each_by_itself(fitter, made, tell), tell)
-        # Against its own noise another may lead, which asks for shorter steps still.
+        # Against its own noise another may lead, which asks by itself for shorter steps still.
         if fitter.comparison.simulator.resolves(contenders[0].effects):
             return against_the_best(fitter, nominal, contenders)
 

@@ -8,14 +8,13 @@ import numpy as np
 import pytest
 
 from tumblers.diagnosis.fitting.fitter import Fitter
-from tumblers.diagnosis.fitting.hypothesis import SECOND
 from tumblers.diagnosis.gap.comparison import Comparison
 from tumblers.diagnosis.gap.simulator import LONGEST_STEP_S, Simulator
-from tumblers.diagnosis.what.conclusion import _equally_far, _from_counterparts, concluded
 from tumblers.diagnosis.what.contender import Contender, of_fit, of_nominal
+from tumblers.diagnosis.what.last_fits import _equally_far, _from_counterparts, concluded
+from tumblers.diagnosis.what.margins import CLEAR, SECOND
 from tumblers.diagnosis.what.own_noise import against_the_best, beside, lead_around, settled_at
 from tumblers.diagnosis.what.search import Search
-from tumblers.diagnosis.what.thresholds import CLEAR
 from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.effects.size_error import SizeError
 from tumblers.effects.stray_field_gradient import StrayFieldGradient
@@ -83,9 +82,9 @@ def test_what_may_be_named_is_fitted_as_far_though_pairs_fit_better(monkeypatch:
         fitted.append(contender.names)
         return contender
 
-    monkeypatch.setattr("tumblers.diagnosis.what.conclusion._PAIRS_EQUALLY_FAR", 2)
-    monkeypatch.setattr("tumblers.diagnosis.what.conclusion.as_far", noted)
-    monkeypatch.setattr("tumblers.diagnosis.what.conclusion.nested", lambda _fitter, single, _pairs: single)
+    monkeypatch.setattr("tumblers.diagnosis.what.last_fits._PAIRS_EQUALLY_FAR", 2)
+    monkeypatch.setattr("tumblers.diagnosis.what.last_fits.as_far", noted)
+    monkeypatch.setattr("tumblers.diagnosis.what.last_fits.nested", lambda _fitter, single, _pairs: single)
     made = _equally_far(fitter, [*pairs, *far_off, alone], quiet)
     assert made[0].names == pairs[0].names
     assert ("size_error",) in fitted
@@ -127,9 +126,9 @@ def test_a_pair_that_is_clearly_behind_is_fitted_from_where_the_best_pair_is(
         assert each == [alone.fit.hypothesis] if alone.fit is not None else False
         return contender
 
-    monkeypatch.setattr("tumblers.diagnosis.what.conclusion.as_far", lambda _fitter, contender, _alike: contender)
-    monkeypatch.setattr("tumblers.diagnosis.what.conclusion.nested", lambda _fitter, single, _pairs: single)
-    monkeypatch.setattr("tumblers.diagnosis.what.conclusion._from_counterparts", noted)
+    monkeypatch.setattr("tumblers.diagnosis.what.last_fits.as_far", lambda _fitter, contender, _alike: contender)
+    monkeypatch.setattr("tumblers.diagnosis.what.last_fits.nested", lambda _fitter, single, _pairs: single)
+    monkeypatch.setattr("tumblers.diagnosis.what.last_fits._from_counterparts", noted)
     made = _equally_far(fitter, [*pairs, alone], quiet)
     assert made[0].names == (pairs[0].names if leads else alone.names)
     assert asked == ([(pairs[2].names, pairs[0].names)] if leads else [])
@@ -180,7 +179,7 @@ def test_the_last_fits_start_from_where_the_best_of_all_is(monkeypatch: pytest.M
         asked.append((contender, best))
         return contender
 
-    monkeypatch.setattr("tumblers.diagnosis.what.conclusion._from_counterparts", noted)
+    monkeypatch.setattr("tumblers.diagnosis.what.last_fits._from_counterparts", noted)
     made = {contender.names: contender for contender in _equally_far(fitter, [pair, worse, stuck], quiet)}
     ((contender, best),) = asked
     assert {contender.names, best.names} == {tilt.names, stuck.names}
@@ -200,10 +199,10 @@ def test_a_pair_leads_where_its_second_effect_adds_what_it_must(
     # Ahead by what a second effect must add, or by a little less: likelier than either effect alone all the same.
     ahead = 2.0 * fitter.comparison.alike * SECOND - short
     pair = replace(pair, cost=pair.cost + tilt.total - pair.total - ahead)
-    monkeypatch.setattr("tumblers.diagnosis.what.conclusion.as_far", lambda _fitter, contender, _alike: contender)
-    monkeypatch.setattr("tumblers.diagnosis.what.conclusion.nested", lambda _fitter, single, _pairs: single)
+    monkeypatch.setattr("tumblers.diagnosis.what.last_fits.as_far", lambda _fitter, contender, _alike: contender)
+    monkeypatch.setattr("tumblers.diagnosis.what.last_fits.nested", lambda _fitter, single, _pairs: single)
     monkeypatch.setattr(
-        "tumblers.diagnosis.what.conclusion._from_counterparts", lambda _fitter, other, _best, _each: other
+        "tumblers.diagnosis.what.last_fits._from_counterparts", lambda _fitter, other, _best, _each: other
     )
     found = _equally_far(fitter, [pair, tilt, gradient], quiet)
     assert found[0].names == (pair.names if leads else tilt.names)
