@@ -65,8 +65,19 @@ def test_frames_that_trackpy_writes_twice(tmp_path: Path) -> None:
 def test_an_index_without_a_name_is_passed_over(tmp_path: Path) -> None:
     track = read(tmp_path, ",time_s,x_m\n7,0.0,1e-6\n8,0.1,2e-6\n")
     assert list(track.channels) == ["x_m"]
+    # As pandas names it once it has read it itself.
+    assert list(read(tmp_path, "Unnamed: 0,time_s,x_m\n7,0.0,1e-6\n").channels) == ["x_m"]
     with pytest.raises(InputError, match="with a column ''"):
         read(tmp_path, "time_s,x_m,\n0.0,1e-6,7\n")
+
+
+def test_empty_rows_and_columns_of_a_spreadsheet_are_passed_over(tmp_path: Path) -> None:
+    track = read(tmp_path, 'time_s, "x_m",\n0.0,1e-6,\n,,\n0.1,2e-6,\n,,\n   \n')
+    assert list(track.channels) == ["x_m"]
+    np.testing.assert_array_equal(track.time_s, [0.0, 0.1])
+    # A lost frame has its time.
+    lost = read(tmp_path, "time_s,x_m\n0.0,1e-6\n0.1,\n")
+    assert (len(lost.time_s), lost.frames) == (2, 1)
 
 
 @pytest.mark.parametrize(

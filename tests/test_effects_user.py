@@ -100,6 +100,15 @@ def test_a_file_registers_all_its_effects_or_none(tmp_path: Path) -> None:
     assert list(CATALOGUE)[-3:] == ["coil_yaw", "first_yaw", "second_yaw"]
 
 
+def test_what_effects_are_made_from_is_none_itself(tmp_path: Path) -> None:
+    shared = "class Shared(Effect):\n    def turned(self, x: float) -> float:\n        return 2.0 * x\n\n\n"
+    text = FILE.replace("@dataclass", shared + "@dataclass").replace("CoilYaw(Effect)", "CoilYaw(Shared)")
+    (effect,) = load_file(write(tmp_path, text))
+    assert effect.name == "coil_yaw"
+    with pytest.raises(InputError, match=r"Shared\.name: found None, expected a name"):
+        load_file(write(tmp_path, "from tumblers.effects import Effect\n\n\n" + shared, "alone.py"))
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [

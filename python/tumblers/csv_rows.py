@@ -12,7 +12,7 @@ __all__ = ["read_csv_rows"]
 
 
 def read_csv_rows(key: str, path: Path, name: str) -> list[tuple[int, list[str]]]:
-    """Return the rows that are not empty, each with the line in which it ends and its cells without spaces around.
+    """Return the rows with anything in them, each with the line in which it ends and its cells without spaces around.
 
     Parameters
     ----------
@@ -31,8 +31,10 @@ def read_csv_rows(key: str, path: Path, name: str) -> list[tuple[int, list[str]]
         lines = read_regular(path).decode("utf-8-sig").splitlines(keepends=True)
     except (OSError, ValueError) as error:
         raise InputError(key, f"{unreadable(error)}: {name}", "a readable CSV file") from None
-    reader = csv.reader(lines, strict=True)
+    reader = csv.reader(lines, strict=True, skipinitialspace=True)
     try:
-        return [(reader.line_num, [cell.strip() for cell in row]) for row in reader if row]
+        rows = [(reader.line_num, [cell.strip() for cell in row]) for row in reader]
+        # A spreadsheet leaves rows of empty cells behind.
+        return [(line, cells) for line, cells in rows if any(cells)]
     except csv.Error as error:
         raise InputError(key, f"{name}: {error}", "a CSV file") from None

@@ -275,6 +275,10 @@ def test_the_poses_are_those_of_what_is_run() -> None:
     [
         ("pass", "weak_amplifier: act returned None, expected a scenario"),
         ("return scenario.field.direction", "weak_amplifier: act failed with AttributeError: .*direction"),
+        (
+            "return replace(scenario, substrate=replace(scenario.substrate, friction_coefficient=-1.0))",
+            "weak_amplifier: no trial takes it from any of its starts: .*friction_coefficient: found -1",
+        ),
     ],
 )
 def test_an_effect_whose_act_fails_says_so(tmp_path: Path, act: str, line: str) -> None:

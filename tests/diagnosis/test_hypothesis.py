@@ -20,7 +20,7 @@ from tumblers.effects.magnetization_misalignment import MagnetizationMisalignmen
 from tumblers.effects.size_error import SizeError
 from tumblers.effects.stray_field_gradient import StrayFieldGradient
 from tumblers.effects.surface_roughness import SurfaceRoughness
-from tumblers.errors import EffectError
+from tumblers.errors import EffectError, InputError
 from tumblers.scenario import Scenario
 
 from .lab import UPWARDS, plan
@@ -100,6 +100,7 @@ class _Odd(FrictionCoefficient):
         ({"ranges": ((0.5, 1.5),)}, "ranges or starts failed with ValueError"),
         ({"starts": ((0.9, 0.0, 0.0),)}, "ranges or starts failed with ValueError"),
         ({"starts": None}, "ranges or starts failed with TypeError"),
+        ({"ranges": InputError("friction", "-1", "a friction")}, "ranges or starts failed with InputError: friction"),
         ({"starts": ((0.9, 0.0),), "ranges": ((0.5,), (0.0,))}, "ranges or starts failed with ValueError"),
     ],
 )

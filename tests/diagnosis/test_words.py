@@ -141,6 +141,13 @@ def test_cautions_name_what_weakens_a_diagnosis() -> None:
     assert "move the outcome of f01 by more than 5 times its noise" in said
     at_end = EffectEstimate("draft_angle", 0.9, {"draft_deg": Interval(8.0, 7.5, 8.0)}, ())
     assert "end of its plausible range" in dict(points(made(effects=(at_end,))))["caution"]
+    said = " ".join(text for label, text in points(outcomes_only()) if label == "caution")
+    assert "without adhesion" not in said
+    smooth = replace(made().dataset, substrate=replace(made().dataset.substrate, adhesion_N_per_m2=0.0))
+    said = dict(points(made(dataset=smooth)))["caution"]
+    assert (
+        "without adhesion, and what multiplies it (adhesion coefficient, line contact adhesion) cannot be tried" in said
+    )
     turned = {"theta1_deg": Interval(20.0, 18.0, 22.0), "theta2_deg": Interval(179.5, 170.0, 189.0)}
     at_end = EffectEstimate("magnetization_misalignment", 0.9, turned, ())
     assert "caution" not in dict(points(made(effects=(at_end,)))), "an angle that turns on has no end"

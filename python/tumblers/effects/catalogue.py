@@ -187,10 +187,16 @@ def _effects_of(path: Path, name: str) -> tuple[type[Effect], ...]:
         raise
     except (Exception, SystemExit) as error:
         raise InputError(None, f"{type(error).__name__}: {error}", "a Python file that runs") from None
-    effects = tuple(
+    defined = [
         value
         for value in vars(module).values()
         if isinstance(value, type) and issubclass(value, Effect) and value.__module__ == name
+    ]
+    # What others are made from, and has no name, is none itself.
+    effects = tuple(
+        one
+        for one in defined
+        if hasattr(one, "name") or not any(issubclass(other, one) for other in defined if other is not one)
     )
     if not effects:
         raise InputError(None, "no effect", "a subclass of tumblers.effects.Effect")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -11,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...effects.base import Effect
+from ...effects.catalogue import file_of
 from ...effects.parameter import Nuisance
-from ...errors import EffectError, InputError, TumblersError
+from ...errors import EffectError, InputError
 from ...scenario import Scenario
 
 __all__ = ["PRIOR_SIGMA", "Hypothesis"]
@@ -66,7 +66,7 @@ class Hypothesis:
         Raises
         ------
         EffectError
-            An effect of a user's own whose ranges or starts fail.
+            An effect of a user's own whose ranges or starts fail, or that no scenario takes from any of its starts.
         """
         neutral = np.array(kind.to_fit([p.neutral for p in kind.parameters]))
         low, high = neutral.copy(), neutral.copy()
@@ -80,7 +80,7 @@ class Hypothesis:
             widest = np.column_stack([np.minimum(widest[:, 0], own[:, 0]), np.maximum(widest[:, 1], own[:, 1])])
             points |= dict.fromkeys(said.starts)
             close |= dict.fromkeys(said.close)
-        if not any(_changes(kind, scenario) for scenario in scenarios):
+        if not _is_tried(kind, scenarios):
             points, close = {}, {}
         scale = np.maximum(np.maximum(high - neutral, neutral - low), 1e-300)
         starts, closer = (
@@ -228,7 +228,7 @@ class _Said(NamedTuple):
                 for found in (kind.ranges, kind.fit_ranges)
             )
             starts, close = ([kind.to_fit(s) for s in found(scenario)] for found in (kind.starts, kind.close_starts))
-        except TumblersError:
+        except EffectError:
             raise
         except Exception as error:
             raise EffectError(
@@ -237,11 +237,20 @@ class _Said(NamedTuple):
         return cls(ranges, fit_ranges, starts, close)
 
 
-def _changes(kind: type[Effect], scenario: Scenario) -> bool:
-    """Return whether an effect changes a scenario from any of its starts."""
-    for start in kind.starts(scenario):
-        # What cannot be added from here may be from another start.
-        with suppress(InputError):
-            if kind.from_vector(start).edit(scenario) != scenario:
-                return True
+def _is_tried(kind: type[Effect], scenarios: Sequence[Scenario]) -> bool:
+    """Return whether an effect changes any of the scenarios from any of its starts."""
+    refused: InputError | None = None
+    taken = False
+    for scenario in scenarios:
+        for start in kind.starts(scenario):
+            # What cannot be added from here may be from another start.
+            try:
+                if kind.from_vector(start).edit(scenario) != scenario:
+                    return True
+                taken = True
+            except InputError as error:
+                refused = error
+    # One of the catalogue has nothing to say of such a dataset; one of a user's own would be left out unnoticed.
+    if refused is not None and not taken and file_of(kind) is not None:
+        raise EffectError(f"{kind.name}: no trial takes it from any of its starts: {refused}") from refused
     return False

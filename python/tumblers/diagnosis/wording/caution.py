@@ -66,6 +66,11 @@ def _of_effects(diagnosis: Diagnosis) -> list[str]:
             f"{names} has a probability of {percent(likeliest.probability)}, but the nominal model follows the data to "
             "within noise too: less noise or other trials would tell."
         )
+    if diagnosis.verdict != "no_gap" and diagnosis.dataset.substrate.adhesion_N_per_m2 == 0.0:
+        said.append(
+            "the substrate is stated without adhesion, and what multiplies it (adhesion coefficient, line contact "
+            "adhesion) cannot be tried: where the robot may stick, state adhesion_N_per_m2."
+        )
     if diagnosis.verdict == "unexplained" and diagnosis.effects:
         said.append("the partial cause may be wrong altogether: it only follows the data better than the others.")
     return said
