@@ -322,3 +322,15 @@ def test_a_tie_that_no_trial_undoes_says_so() -> None:
 def test_a_direction_is_told_where_it_is_not_the_usual_one(axis: tuple[float, float, float], words: str) -> None:
     field = {"kind": "rotating", "strength_T": 0.02, "frequency_Hz": 2.0, "rotation_axis": axis}
     assert condition_of_table({"field": field, "incline_deg": 0.0}) == words
+
+
+def test_the_file_says_which_way_the_missing_force_points() -> None:
+    diagnosis = made()
+    assert diagnosis.missing_wrench is not None
+    said = json.loads(diagnosis.to_json())["missing_wrench"]
+    assert set(said) == {"frequency", "cycle_phase", "contact_mode", "place"}
+    for label, (wrench, sigma) in diagnosis.missing_wrench.by_frequency.items():
+        found = said["frequency"][label]
+        assert found["force_N"] + found["torque_N_m"] == wrench.tolist()
+        assert found["force_sigma_N"] + found["torque_sigma_N_m"] == sigma.tolist()
+    assert json.loads(made(missing_wrench=None).to_json())["missing_wrench"] is None

@@ -203,6 +203,7 @@ class Diagnosis:
                 },
             },
             "where": [_region(region) for region in self.where],
+            "missing_wrench": None if self.missing_wrench is None else _averages(self.missing_wrench),
             "next_trials": [
                 {
                     "why": proposed.why,
@@ -277,6 +278,27 @@ def _region(region: Region) -> dict[str, Any]:
         place["value"] = region.value
     what = {} if region.what is None else {"what": region.what}
     return place | {"share_of_gap": region.share_of_gap, "sigmas": region.sigmas} | what
+
+
+def _averages(missing: MissingWrench) -> dict[str, Any]:
+    by = {
+        "frequency": missing.by_frequency,
+        "cycle_phase": missing.by_phase,
+        "contact_mode": missing.by_mode,
+        "place": missing.by_place,
+    }
+    return {
+        axis: {
+            label: {
+                "force_N": wrench[:3].tolist(),
+                "force_sigma_N": sigma[:3].tolist(),
+                "torque_N_m": wrench[3:].tolist(),
+                "torque_sigma_N_m": sigma[3:].tolist(),
+            }
+            for label, (wrench, sigma) in averages.items()
+        }
+        for axis, averages in by.items()
+    }
 
 
 def _plain(value: Any) -> Any:
