@@ -12,6 +12,7 @@ from tumblers.diagnosis.gap.pose import body_axis, heading_of, tilt_of
 from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.diagnosis.result import HeatMap, Region
 from tumblers.diagnosis.where.localise import localise
+from tumblers.diagnosis.where.wrench import missing_wrench
 from tumblers.effects import get
 from tumblers.effects.base import Effect
 from tumblers.field import Field, StaticField
@@ -112,6 +113,28 @@ def test_a_knock_is_found_where_it_was_and_not_where_it_led() -> None:
     assert place.high is not None
     assert place.low - 1e-3 < half < place.high + 1e-3
     assert place.high - place.low < 0.4 * track.channels["y_m"][-1]
+
+
+def test_a_robot_that_stays_has_its_gap_where_it_was_seen() -> None:
+    dataset = lab(seed=5)
+    track = dataset.trial("f5").track
+    assert track is not None
+    y = track.channels["y_m"]
+    stays = 0.4 * y[-1]
+    held = np.where(y > stays, stays - y, 0.0)
+    stuck = shifted(dataset, "f5", "y_m", held)
+    (place,) = of(where(stuck)[0], "position_y_m")
+    assert place.low is not None
+    assert place.high is not None
+    # The model goes on to more than twice as far.
+    assert place.low - 1e-3 < stays < place.high + 1e-3
+    assert place.high < 0.7 * y[-1]
+    # So is what is missing.
+    alone = replace(stuck, trials=(stuck.trial("f5"),))
+    comparison = Comparison(alone, Simulator(alone, 1))
+    missing = missing_wrench(comparison, comparison.residual(comparison.nominal_paths), comparison.nominal_paths)
+    assert missing is not None
+    assert max(float(label.split("–")[1].removesuffix(" mm")) for label in missing.by_place) < 1e3 * stays + 0.2
 
 
 def test_rolloff_lies_at_high_frequency() -> None:

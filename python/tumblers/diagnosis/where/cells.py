@@ -13,6 +13,7 @@ from ..gap.comparison import Comparison, Residual
 from ..gap.loss import huber
 from ..gap.observed import CHANNELS
 from ..gap.pose import Path
+from .seen_place import seen_place
 
 __all__ = ["MODES", "Cells"]
 
@@ -45,7 +46,8 @@ class Cells:
     outcome
         Whether it is of an outcome and not of a track.
     time_s, phase_deg, x_m, y_m
-        Time, phase of the rotating field's cycle, and place of the model; NaN where there is none.
+        Time, phase of the rotating field's cycle, and place, the model's along an axis that was not tracked; NaN where
+        there is none.
     mode
         Place in `MODES`, -1 for outcomes.
     frequency_Hz, strength_T, incline_deg
@@ -78,7 +80,7 @@ class Cells:
         residual
             How wrong the model is.
         paths
-            The model's; a trial that it cannot run has no places.
+            The model's; a trial that it cannot run has no contact modes.
         """
         blocks: list[dict[str, Floats]] = []
         for i, path in enumerate(paths):
@@ -94,8 +96,10 @@ class Cells:
                 clock = times + residual.local[i, 0] + (path.clock_s if path is not None else 0.0)
                 where = np.full((len(times), 2), np.nan)
                 mode = np.full(len(times), -1.0)
-                if path is not None and not outcome and len(times):
-                    where, mode = path.at(clock)[0][:, :2], path.mode_at(clock).astype(np.float64)
+                if not outcome and len(times):
+                    if path is not None:
+                        where, mode = path.at(clock)[0][:, :2], path.mode_at(clock).astype(np.float64)
+                    where = seen_place(comparison.readers[i].observed, residual.local[i], times, where)
                 loss = huber(values)
                 level = 1.0 if outcome or not len(times) else min(1.0, float(np.median(values**2)) / _MEDIAN)
                 block = {

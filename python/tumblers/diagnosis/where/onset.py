@@ -117,7 +117,7 @@ def begins_at_place(comparison: Comparison, residual: Residual, paths: Sequence[
         The model's.
     """
     cells = Cells.of(comparison, residual, paths)
-    place = _measured_y(comparison, residual, cells)
+    place = cells.y_m
     counted = _counted(cells, paths) & np.isfinite(place)
     if not counted.any():
         return None
@@ -285,19 +285,6 @@ def _shared(evidence: Floats) -> int | None:
         return None
     told, own = float(evidence[best].sum()), float(np.maximum(evidence.max(axis=0), 0.0).sum())
     return best if told > CLEAR_LN + log(len(evidence)) and told >= _SHARED * own else None
-
-
-def _measured_y(comparison: Comparison, residual: Residual, cells: Cells) -> Floats:
-    """Return where along y the robot was seen, m, shape (n,): one that is held up is not where the model is."""
-    place = cells.y_m.copy()
-    for trial, reader in enumerate(comparison.readers):
-        seen = reader.observed.values.get("y", np.empty(0))
-        found = np.isfinite(seen)
-        if found.any():
-            mine = (cells.trial == trial) & ~cells.outcome
-            at_origin = seen[found] - residual.local[trial, 2]
-            place[mine] = np.interp(cells.time_s[mine], reader.observed.time_s[found], at_origin)
-    return place
 
 
 def _region(axis: str, cells: Cells, values: Floats, counted: Mask, low: float, high: float) -> Region | None:
