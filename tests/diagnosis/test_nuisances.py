@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from tumblers.dataset import Track
+from tumblers.dataset import Dataset, Track
 from tumblers.diagnosis import diagnose
 from tumblers.diagnosis.fitting.hypothesis import Hypothesis
 from tumblers.diagnosis.gap.comparison import Comparison
@@ -212,22 +212,55 @@ def test_a_clock_is_found_in_a_few_frames_a_cycle(every: int, clock_frames: floa
     assert np.sqrt(np.mean(found.trials[0] ** 2)) < 1.3
 
 
-def test_a_height_from_another_zero_in_each_trial_is_no_gap_where_it_may_be_off() -> None:
-    dataset = measure(plan(), clock_frames=-0.2, origin_m=2e-5)
+def raised(dataset: Dataset) -> Dataset:
+    """Return a dataset whose heights are from another zero in each trial."""
     trials = []
     for trial, zero_m in zip(dataset.trials, (-5e-6, 1e-5, -5e-6, 1e-5, -5e-6), strict=True):
         assert trial.track is not None
         channels = {**trial.track.channels, "z_m": trial.track.channels["z_m"] + zero_m}
         trials.append(replace(trial, track=Track(time_s=trial.track.time_s, channels=channels)))
-    dataset = replace(dataset, trials=tuple(trials))
+    return replace(dataset, trials=tuple(trials))
+
+
+def unsure(dataset: Dataset, z_origin_tolerance_m: float) -> Dataset:
+    return replace(dataset, sensor=replace(dataset.sensor, z_origin_tolerance_m=z_origin_tolerance_m))
+
+
+def test_a_height_from_another_zero_in_each_trial_is_no_gap_where_it_may_be_off() -> None:
+    dataset = raised(measure(plan(), clock_frames=-0.2, origin_m=2e-5))
     names = ("size_error", "friction_coefficient")
-    # To a lab that knows its height, as where nothing is stated, it is one.
-    assert diagnose(dataset, effects=names, jobs=2).verdict != "no_gap"
-    unsure = replace(dataset, sensor=replace(dataset.sensor, z_origin_tolerance_m=3e-5))
-    found = diagnose(unsure, effects=names, jobs=2)
+    # To a lab that knows its height it is one.
+    assert diagnose(unsure(dataset, 0.0), effects=names, jobs=2).verdict != "no_gap"
+    found = diagnose(unsure(dataset, 3e-5), effects=names, jobs=2)
     assert found.verdict == "no_gap"
     assert found.gap.after_nuisance_only < 1.1 < found.gap.before
     assert any("along z 30 µm" in said for said in found.assumptions)
+    # Where nothing is stated, the data say so.
+    found = diagnose(dataset, effects=names, jobs=2)
+    assert found.verdict == "no_gap"
+    assert any("along z 50 µm" in said for said in found.assumptions)
+    assert any(said.startswith("Heights are taken to be measured from a zero") for said in found.assumptions)
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "off"),
+    [
+        ("size_error", (1.03, 1.03), False),
+        ("contact_compliance", (0.3,), False),
+        ("stray_field_gradient", (0.0, 0.05, 0.0, 0.0), True),
+        ("viscous_drag", (1e-3,), True),
+    ],
+)
+def test_a_zero_of_the_height_is_fitted_beside_an_effect_where_it_is_off_alone(
+    name: str, values: tuple[float, ...], off: bool
+) -> None:
+    kind = get(name)
+    dataset = measure(plan(), (kind.from_vector(values),), origin_m=2e-5)
+    names = (name, "friction_coefficient")
+    found = diagnose(raised(dataset) if off else dataset, effects=names, jobs=2)
+    assert found.verdict == "explained"
+    assert [effect.name for effect in found.effects] == [name]
+    assert any("along z" in said for said in found.assumptions) == off
 
 
 @pytest.mark.parametrize("low_deg", [-90.0, 0.0])

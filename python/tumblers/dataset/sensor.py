@@ -61,7 +61,8 @@ class Sensor:
         How far the track's origin (m), heading (degrees) and scale (a fraction) may be off.
     z_origin_tolerance_m
         How far the height may be off that the track takes for the substrate's, m: 0 where it is that of the robot's
-        start, for the robot starts on the substrate.
+        start, for the robot starts on the substrate. If None, a diagnosis takes 0, or `origin_tolerance_m` where the
+        data clearly ask for it.
     tracked_point
         What the positions are of: ``body_centre``, the centre of the body's shape, or ``centre_of_mass``. If None, a
         diagnosis takes the shape's centre, unless by the other an offset of the mass alone explains all and is clearly
@@ -85,7 +86,7 @@ class Sensor:
     y_axis_px: Pixel = (0.0, -1.0)
     time_offset_s: float | None = None
     origin_tolerance_m: float = 50e-6
-    z_origin_tolerance_m: float = 0.0
+    z_origin_tolerance_m: float | None = None
     heading_tolerance_deg: float = 2.0
     scale_tolerance: float = 0.005
     tracked_point: TrackedPoint | None = None
@@ -105,7 +106,8 @@ class Sensor:
         if self.time_offset_s is not None:
             put("time_offset_s", number("sensor.time_offset_s", self.time_offset_s, least=0.0))
         put("origin_tolerance_m", number("sensor.origin_tolerance_m", self.origin_tolerance_m, least=0.0))
-        put("z_origin_tolerance_m", number("sensor.z_origin_tolerance_m", self.z_origin_tolerance_m, least=0.0))
+        if self.z_origin_tolerance_m is not None:
+            put("z_origin_tolerance_m", number("sensor.z_origin_tolerance_m", self.z_origin_tolerance_m, least=0.0))
         heading = number("sensor.heading_tolerance_deg", self.heading_tolerance_deg, least=0.0, most=180.0)
         put("heading_tolerance_deg", heading)
         put("scale_tolerance", number("sensor.scale_tolerance", self.scale_tolerance, least=0.0, below=1.0))

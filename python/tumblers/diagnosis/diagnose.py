@@ -33,6 +33,7 @@ from .result import EffectEstimate, HeatMap, Interval, NextTrial, RankedHypothes
 from .what.attribute import LAPSE, PRIOR, REFUSED, Attribution, attribute, seen_from_the_best
 from .what.contender import Contender
 from .what.estimate import intervals
+from .what.height_zero import with_height_zero
 from .what.margins import SECOND
 from .what.own_noise import lead_around
 from .what.tracked_point import with_tracked_point
@@ -116,6 +117,10 @@ def diagnose(
                 dataset.directory,
             )
         attribution = attribute(comparison, kinds, tell, seed)
+        free = with_height_zero(comparison, attribution)
+        if free is not None:
+            comparison = Comparison(free, Simulator(free, jobs or 0))
+            attribution = attribute(comparison, kinds, tell, seed)
         return _Conclusion(dataset, comparison, attribution, seed, tell).diagnosis(start)
 
 
@@ -346,7 +351,7 @@ def _assumptions(dataset: Dataset, comparison: Comparison, attribution: Attribut
     given = "magnetic_torque" in comparison.dataset.model_given
     stated = "as the dataset states" if given else "which the dataset leaves open"
     origin = f"{1e6 * sensor.origin_tolerance_m:g} µm"
-    if sensor.z_origin_tolerance_m > 0.0:
+    if sensor.z_origin_tolerance_m:
         origin += f", along z {1e6 * sensor.z_origin_tolerance_m:g} µm"
     said = [
         f"The magnetic torque is taken by the scheme '{simulator.model.magnetic_torque}', {stated}.",
@@ -389,6 +394,11 @@ def _assumptions(dataset: Dataset, comparison: Comparison, attribution: Attribut
             "mass explains them alone, and clearly better than if they are of the centre of the shape."
             if sensor.tracked_point == "centre_of_mass"
             else "Positions are taken to be of the centre of the body's shape, for the sensor does not say."
+        )
+    if sensor.z_origin_tolerance_m and dataset.sensor.z_origin_tolerance_m is None:
+        said.append(
+            "Heights are taken to be measured from a zero of their own in each trial, not from the substrate: the data "
+            "clearly ask for it, and the sensor does not say."
         )
     if attribution.refused:
         names = ", ".join(" + ".join(effects) for effects in attribution.refused)
