@@ -67,8 +67,9 @@ def test_an_index_without_a_name_is_passed_over(tmp_path: Path) -> None:
     assert list(track.channels) == ["x_m"]
     # As pandas names it once it has read it itself.
     assert list(read(tmp_path, "Unnamed: 0,time_s,x_m\n7,0.0,1e-6\n").channels) == ["x_m"]
-    with pytest.raises(InputError, match="with a column ''"):
-        read(tmp_path, "time_s,x_m,\n0.0,1e-6,7\n")
+    for name in ("", "Unnamed: 2"):
+        with pytest.raises(InputError, match=f"with a column '{name}'"):
+            read(tmp_path, f"time_s,x_m,{name}\n0.0,1e-6,7\n")
 
 
 def test_empty_rows_and_columns_of_a_spreadsheet_are_passed_over(tmp_path: Path) -> None:

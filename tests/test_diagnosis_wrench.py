@@ -76,6 +76,11 @@ def test_a_push_is_recovered_where_the_robot_hops() -> None:
     regions = wrench_regions(missing)
     assert (regions[0].axis, regions[0].value) == ("missing_force", "y")
     assert regions[0].share_of_gap > 0.5
+    # Which way, and how much.
+    assert regions[0].missing is not None
+    push, unsure = regions[0].missing
+    assert abs(push - PUSH_N) < 3.0 * unsure
+    assert regions[0].sigmas == pytest.approx(push / unsure)
 
 
 @pytest.mark.parametrize("seed", [2, 3])

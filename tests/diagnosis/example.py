@@ -207,6 +207,7 @@ def made(**changes: Any) -> Diagnosis:
             ),
         ),
         "tracked_point": "body_centre",
+        "z_origin_tolerance_m": 0.0,
         "missing_wrench": wrench(),
         "overlays": tuple(overlays),
         "floors": tuple(

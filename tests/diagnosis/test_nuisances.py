@@ -246,9 +246,8 @@ def test_a_height_from_another_zero_in_each_trial_is_no_gap_where_it_may_be_off(
     ("name", "values", "off"),
     [
         ("size_error", (1.03, 1.03), False),
-        ("contact_compliance", (0.3,), False),
+        ("size_error", (1.03, 1.03), True),
         ("stray_field_gradient", (0.0, 0.05, 0.0, 0.0), True),
-        ("viscous_drag", (1e-3,), True),
     ],
 )
 def test_a_zero_of_the_height_is_fitted_beside_an_effect_where_it_is_off_alone(
@@ -256,11 +255,20 @@ def test_a_zero_of_the_height_is_fitted_beside_an_effect_where_it_is_off_alone(
 ) -> None:
     kind = get(name)
     dataset = measure(plan(), (kind.from_vector(values),), origin_m=2e-5)
-    names = (name, "friction_coefficient")
-    found = diagnose(raised(dataset) if off else dataset, effects=names, jobs=2)
+    # A size takes some of the zero where it is not fitted.
+    found = diagnose(raised(dataset) if off else dataset, effects=("size_error", "stray_field_gradient"), jobs=2)
     assert found.verdict == "explained"
     assert [effect.name for effect in found.effects] == [name]
-    assert any("along z" in said for said in found.assumptions) == off
+    assert found.z_origin_tolerance_m == (5e-5 if off else 0.0)
+    taken = "from a zero of their own" if off else "from the substrate, for the sensor does not say"
+    assert any(said.startswith("Heights") and taken in said for said in found.assumptions)
+
+
+def test_a_cause_that_is_not_considered_is_no_zero_of_the_height() -> None:
+    dataset = measure(plan(), (get("size_error").from_vector((1.03, 1.03)),), origin_m=2e-5)
+    found = diagnose(dataset, effects=("friction_coefficient",), jobs=2)
+    assert found.verdict == "unexplained"
+    assert found.z_origin_tolerance_m == 0.0
 
 
 @pytest.mark.parametrize("low_deg", [-90.0, 0.0])

@@ -143,6 +143,9 @@ def test_cautions_name_what_weakens_a_diagnosis() -> None:
     assert "end of its plausible range" in dict(points(made(effects=(at_end,))))["caution"]
     said = " ".join(text for label, text in points(outcomes_only()) if label == "caution")
     assert "without adhesion" not in said
+    assert "a zero of their own" not in said
+    said = dict(points(made(z_origin_tolerance_m=5e-5)))["caution"]
+    assert "heights were taken to be from a zero of their own in each trial" in said
     smooth = replace(made().dataset, substrate=replace(made().dataset.substrate, adhesion_N_per_m2=0.0))
     said = dict(points(made(dataset=smooth)))["caution"]
     assert (
@@ -287,6 +290,15 @@ def test_what_may_act_in_a_part_alone_is_said_as_a_supposition() -> None:
     assert cycle.what in where_part(made(where=(trial, cycle)))
 
 
+@pytest.mark.parametrize(
+    ("axis", "keys"), [("force", ("force_N", "force_sigma_N")), ("torque", ("torque_N_m", "torque_sigma_N_m"))]
+)
+def test_the_file_says_which_way_what_is_missing_points(axis: str, keys: tuple[str, str]) -> None:
+    region = Region(f"missing_{axis}", 0.7, value="y", sigmas=4.0, missing=(-2e-7, 5e-8))
+    (entry,) = json.loads(made(where=(region,)).to_json())["where"]
+    assert [entry[key] for key in keys] == [-2e-7, 5e-8]
+
+
 def test_of_what_refitting_the_camera_closes_no_effect_takes_the_credit() -> None:
     gap = replace(made().gap, before=5.0, after_nuisance_only=2.0, after=1.1)
     assert headline(made(gap=gap)).endswith(
@@ -322,15 +334,3 @@ def test_a_tie_that_no_trial_undoes_says_so() -> None:
 def test_a_direction_is_told_where_it_is_not_the_usual_one(axis: tuple[float, float, float], words: str) -> None:
     field = {"kind": "rotating", "strength_T": 0.02, "frequency_Hz": 2.0, "rotation_axis": axis}
     assert condition_of_table({"field": field, "incline_deg": 0.0}) == words
-
-
-def test_the_file_says_which_way_the_missing_force_points() -> None:
-    diagnosis = made()
-    assert diagnosis.missing_wrench is not None
-    said = json.loads(diagnosis.to_json())["missing_wrench"]
-    assert set(said) == {"frequency", "cycle_phase", "contact_mode", "place"}
-    for label, (wrench, sigma) in diagnosis.missing_wrench.by_frequency.items():
-        found = said["frequency"][label]
-        assert found["force_N"] + found["torque_N_m"] == wrench.tolist()
-        assert found["force_sigma_N"] + found["torque_sigma_N_m"] == sigma.tolist()
-    assert json.loads(made(missing_wrench=None).to_json())["missing_wrench"] is None

@@ -73,6 +73,7 @@ def draw_lab(rng: np.random.Generator) -> tuple[Lab, Jitter]:
             position_noise_m=round(float(rng.uniform(1.5e-6, 4e-6)), 8),
             angle_noise_deg=round(float(rng.uniform(0.5, 1.5)), 2),
             tracked_point="body_centre",
+            z_origin_tolerance_m=0.0,
         ),
         channels=("x_m", "y_m", *(("z_m",) if rng.random() < 0.6 else ()), *angles),
         frames_per_second=float(rng.choice([50.0, 60.0, 75.0, 90.0, 100.0, 120.0])),

@@ -23,8 +23,8 @@ __all__ = ["TrackFile", "read_track_csv", "write_track_csv"]
 _PIXELS = (("x_px", "y_px"), ("x", "y"))
 # What trackpy and pandas write beside frame, x and y; it says nothing about where the robot is.
 _PASSED_OVER = ("particle", "mass", "size", "ecc", "signal", "raw_mass", "ep")
-# How pandas reads a column without a name.
-_UNNAMED = re.compile(r"Unnamed: \d+")
+# A column without a name, and what pandas makes of it.
+_UNNAMED = re.compile(r"|Unnamed: [\d.]+")
 _LOST = "a finite number, or an empty cell for a lost frame"
 
 
@@ -154,7 +154,7 @@ def _read(key: str, path: Path, name: str) -> _Table:
     for i, column in enumerate(header):
         entries = [row[i] for _, row in rows[1:]]
         # pandas writes an index without a name first, and says nothing with it; a spreadsheet leaves empty columns.
-        if _UNNAMED.fullmatch(column) or (not column and (i == 0 or not any(entries))):
+        if _UNNAMED.fullmatch(column) and (i == 0 or not any(entries)):
             continue
         # What trackpy filters has its frames twice: as the index, and as a column.
         if column in cells and (column != "frame" or _values(entries) != _values(cells[column])):

@@ -204,6 +204,7 @@ class _Conclusion:
             dataset=self.dataset,
             model=comparison.simulator.model,
             tracked_point=comparison.dataset.sensor.camera.tracked_point,
+            z_origin_tolerance_m=comparison.dataset.sensor.z_origin_tolerance_m or 0.0,
             verdict=verdict,
             effects=estimates,
             chosen=chosen.effects,
@@ -395,10 +396,12 @@ def _assumptions(dataset: Dataset, comparison: Comparison, attribution: Attribut
             if sensor.tracked_point == "centre_of_mass"
             else "Positions are taken to be of the centre of the body's shape, for the sensor does not say."
         )
-    if sensor.z_origin_tolerance_m and dataset.sensor.z_origin_tolerance_m is None:
+    if dataset.sensor.z_origin_tolerance_m is None and any(comparison.heights):
         said.append(
             "Heights are taken to be measured from a zero of their own in each trial, not from the substrate: the data "
             "clearly ask for it, and the sensor does not say."
+            if sensor.z_origin_tolerance_m
+            else "Heights are taken to be measured from the substrate, for the sensor does not say."
         )
     if attribution.refused:
         names = ", ".join(" + ".join(effects) for effects in attribution.refused)

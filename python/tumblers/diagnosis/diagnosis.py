@@ -42,6 +42,11 @@ if TYPE_CHECKING:
 __all__ = ["FILES", "FORMAT", "Diagnosis", "is_ours"]
 
 FORMAT = "tumblers-diagnosis/1"
+# What is missing, and its standard deviation.
+_MISSING = {
+    "missing_force": ("force_N", "force_sigma_N"),
+    "missing_torque": ("torque_N_m", "torque_sigma_N_m"),
+}
 # What `Diagnosis.save` writes.
 FILES = ("diagnosis.json", "effects.toml", "scenario.toml", "report.html")
 
@@ -58,6 +63,8 @@ class Diagnosis:
         The model's switches that were used.
     tracked_point
         What the positions were taken to be of: what the sensor says, or else what was found.
+    z_origin_tolerance_m
+        Within what the zero of heights was fitted in each trial, m: what the sensor says, or else what was found.
     verdict
         ``no_gap``, ``explained`` or ``unexplained``.
     effects
@@ -85,6 +92,7 @@ class Diagnosis:
     dataset: Dataset
     model: Model
     tracked_point: TrackedPoint
+    z_origin_tolerance_m: float
     verdict: Verdict
     effects: tuple[EffectEstimate, ...]
     chosen: tuple[Effect, ...]
@@ -169,6 +177,7 @@ class Diagnosis:
             "format": FORMAT,
             "verdict": self.verdict,
             "tracked_point": self.tracked_point,
+            "z_origin_tolerance_m": self.z_origin_tolerance_m,
             "effects": [
                 {
                     "name": effect.name,
@@ -203,7 +212,6 @@ class Diagnosis:
                 },
             },
             "where": [_region(region) for region in self.where],
-            "missing_wrench": None if self.missing_wrench is None else _averages(self.missing_wrench),
             "next_trials": [
                 {
                     "why": proposed.why,
@@ -277,28 +285,8 @@ def _region(region: Region) -> dict[str, Any]:
     else:
         place["value"] = region.value
     what = {} if region.what is None else {"what": region.what}
-    return place | {"share_of_gap": region.share_of_gap, "sigmas": region.sigmas} | what
-
-
-def _averages(missing: MissingWrench) -> dict[str, Any]:
-    by = {
-        "frequency": missing.by_frequency,
-        "cycle_phase": missing.by_phase,
-        "contact_mode": missing.by_mode,
-        "place": missing.by_place,
-    }
-    return {
-        axis: {
-            label: {
-                "force_N": wrench[:3].tolist(),
-                "force_sigma_N": sigma[:3].tolist(),
-                "torque_N_m": wrench[3:].tolist(),
-                "torque_sigma_N_m": sigma[3:].tolist(),
-            }
-            for label, (wrench, sigma) in averages.items()
-        }
-        for axis, averages in by.items()
-    }
+    missing = {} if region.missing is None else dict(zip(_MISSING[region.axis], region.missing, strict=True))
+    return place | {"share_of_gap": region.share_of_gap, "sigmas": region.sigmas} | missing | what
 
 
 def _plain(value: Any) -> Any:

@@ -142,6 +142,9 @@ class Region:
         Root mean square difference there, over what noise would give.
     what
         What may act there and not elsewhere, such as ``0.12 times the magnetic torque``.
+    missing
+        Of a component of the missing wrench its mean and standard deviation, N or N m, at the frequency at which it is
+        clearest.
     """
 
     axis: str
@@ -151,6 +154,7 @@ class Region:
     value: str | None = None
     sigmas: float | None = None
     what: str | None = None
+    missing: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, eq=False)

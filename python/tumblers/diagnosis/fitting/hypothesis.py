@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...effects.base import Effect
-from ...effects.catalogue import file_of
 from ...effects.parameter import Nuisance
 from ...errors import EffectError, InputError
 from ...scenario import Scenario
@@ -240,17 +239,15 @@ class _Said(NamedTuple):
 def _is_tried(kind: type[Effect], scenarios: Sequence[Scenario]) -> bool:
     """Return whether an effect changes any of the scenarios from any of its starts."""
     refused: InputError | None = None
-    taken = False
     for scenario in scenarios:
         for start in kind.starts(scenario):
             # What cannot be added from here may be from another start.
             try:
                 if kind.from_vector(start).edit(scenario) != scenario:
                     return True
-                taken = True
             except InputError as error:
                 refused = error
     # One of the catalogue has nothing to say of such a dataset; one of a user's own would be left out unnoticed.
-    if refused is not None and not taken and file_of(kind) is not None:
+    if refused is not None and kind.__module__.partition(".")[0] != __package__.partition(".")[0]:
         raise EffectError(f"{kind.name}: no trial takes it from any of its starts: {refused}") from refused
     return False

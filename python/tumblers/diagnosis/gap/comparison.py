@@ -215,6 +215,11 @@ class Comparison:
         return sum(self.sizes)
 
     @cached_property
+    def heights(self) -> tuple[int, ...]:
+        """By trial, how many heights were measured."""
+        return tuple(int(np.isfinite(r.observed.values.get("z", np.empty(0))).sum()) for r in self.readers)
+
+    @cached_property
     def alike(self) -> float:
         """How many neighbouring numbers of the tracks count as one: those of 0.16 s, up to eight.
 

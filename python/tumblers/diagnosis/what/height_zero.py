@@ -5,28 +5,28 @@ for one of these. Fitted always, it would hide them. So it is fitted where the d
 every trial and n its heights, where
 
 ```text
-max ln L(z₀, M) - Σ ½ ln n  >  max ln L(0, M) + 1.25,      M the nominal model, or what leads with z₀ = 0
+max ln L(z₀, M) - Σ ½ ln n  >  max ln L(0, M) + 1.25
 ```
 
-which is what a zero of each trial costs by Schwarz's criterion (Schwarz 1978), and where that leaves no gap: of another
-cause, what follows a little better speaks for no zero.
+and the left side leaves no gap. M is the nominal model, what leads with z₀ = 0, or one of the effects of that; ½ ln n
+is what a zero costs by Schwarz's criterion (Schwarz 1978). Of another cause, what follows a little better speaks for no
+zero.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from math import log
-
-import numpy as np
 
 from ...dataset import Dataset
 from ..fitting.fitter import Fitter
 from ..gap.comparison import Comparison
-from ..gap.predictive import is_wanting
+from ..gap.predictive import is_right
 from .attribute import Attribution
 from .contender import Contender, likeliest, of_nominal
 from .margins import CLEAR
-from .own_noise import against_itself
+from .own_noise import POLISH_POINTS, against_itself, by_itself
 
 __all__ = ["with_height_zero"]
 
@@ -43,29 +43,32 @@ def with_height_zero(comparison: Comparison, attribution: Attribution) -> Datase
     """
     dataset = comparison.dataset
     sensor = dataset.sensor
-    heights = [int(np.isfinite(r.observed.values.get("z", np.empty(0))).sum()) for r in comparison.readers]
+    heights = comparison.heights
     if sensor.z_origin_tolerance_m is not None or attribution.nominal_is_right or not any(heights):
         return None
     free = replace(dataset, sensor=replace(sensor, z_origin_tolerance_m=sensor.origin_tolerance_m))
     best = attribution.contenders[0]
+    # What leads with no zero may have a second effect for it.
+    those = [c for c in attribution.contenders if c is best or (len(c.names) == 1 and c.names[0] in best.names)]
     with comparison.restored():
-        fixed, _ = _likeliest(comparison, best)
-        fitted, wanting = _likeliest(Comparison(free, comparison.simulator), best)
+        fixed, _ = _likeliest(comparison, those, fit=False)
+        fitted, right = _likeliest(Comparison(free, comparison.simulator), those, fit=True)
     cost = sum(0.5 * log(n) for n in heights if n)
-    return free if fitted - cost > fixed + CLEAR and not wanting else None
+    return free if right and fitted - cost > fixed + CLEAR else None
 
 
-def _likeliest(comparison: Comparison, best: Contender) -> tuple[float, bool]:
-    """Return the greater ln of the likelihood of the nominal model and of what leads, and whether that leaves a gap.
+def _likeliest(comparison: Comparison, those: Sequence[Contender], fit: bool) -> tuple[float, bool]:
+    """Return the greatest ln of the likelihood of the nominal model and of others, and whether that leaves no gap.
 
-    Each against its own noise.
+    Each against its own noise, fitted on if `fit`.
     """
     fitter = Fitter(comparison)
     fitter.take_likeliest_noise(())
     found = [of_nominal(fitter)]
-    if best.fit is not None:
-        found.append(against_itself(fitter, best.fit))
+    for contender in those:
+        if contender.fit is not None:
+            one = against_itself(fitter, contender.fit)
+            found.append(by_itself(fitter, one, POLISH_POINTS) if fit else one)
     leading = likeliest(found)
     total = leading.total + comparison.nominal_log_determinant
-    fitter.take_likeliest_noise(leading.effects)
-    return -total / comparison.objective_of(1.0), is_wanting(comparison, leading.residual)
+    return -total / comparison.objective_of(1.0), is_right(comparison, leading.residual)

@@ -13,7 +13,7 @@ from ..gap.comparison import Comparison, Residual
 from ..gap.loss import huber
 from ..gap.observed import CHANNELS
 from ..gap.pose import Path
-from .seen_place import seen_place
+from .seen_along import seen_along
 
 __all__ = ["MODES", "Cells"]
 
@@ -46,8 +46,8 @@ class Cells:
     outcome
         Whether it is of an outcome and not of a track.
     time_s, phase_deg, x_m, y_m
-        Time, phase of the rotating field's cycle, and place, the model's along an axis that was not tracked; NaN where
-        there is none.
+        Time, phase of the rotating field's cycle, place of the model across, and along where the robot was seen, or the
+        model's where y was not tracked; NaN where there is none.
     mode
         Place in `MODES`, -1 for outcomes.
     frequency_Hz, strength_T, incline_deg
@@ -94,12 +94,12 @@ class Cells:
                 outcome = place >= tracked
                 channel = _OF_OUTCOME.get(name, name)
                 clock = times + residual.local[i, 0] + (path.clock_s if path is not None else 0.0)
-                where = np.full((len(times), 2), np.nan)
+                across, along = np.full((2, len(times)), np.nan)
                 mode = np.full(len(times), -1.0)
                 if not outcome and len(times):
                     if path is not None:
-                        where, mode = path.at(clock)[0][:, :2], path.mode_at(clock).astype(np.float64)
-                    where = seen_place(comparison.readers[i].observed, residual.local[i], times, where)
+                        (across, along, _), mode = path.at(clock)[0].T, path.mode_at(clock).astype(np.float64)
+                    along = seen_along(comparison.readers[i].observed, residual.local[i], times, along)
                 loss = huber(values)
                 level = 1.0 if outcome or not len(times) else min(1.0, float(np.median(values**2)) / _MEDIAN)
                 block = {
@@ -112,8 +112,8 @@ class Cells:
                     # An outcome is of the whole trial.
                     "time_s": np.where(outcome, np.nan, times),
                     "phase_deg": np.full(len(times), np.nan),
-                    "x_m": where[:, 0],
-                    "y_m": where[:, 1],
+                    "x_m": across,
+                    "y_m": along,
                     "mode": mode,
                     "frequency_Hz": np.full(len(times), np.nan),
                     "strength_T": np.full(len(times), np.nan),

@@ -30,7 +30,7 @@ from ..gap.pose import Path
 from ..result import MissingWrench
 from .cells import MODES
 from .remainder import left_by, nuisance_columns, nuisances_present
-from .seen_place import seen_place
+from .seen_along import seen_along
 from .wrench_maps import mapped
 from .wrench_means import Windows
 from .wrench_pieces import HALF_A_CYCLE, Pieces, along, at_rest, within_cycles
@@ -283,8 +283,8 @@ def _windows(
     scale = np.tile(prior, pieces.count)
     information = a / spread / np.outer(scale, scale)
     middle = 0.5 * (pieces.edges[1:] + pieces.edges[:-1])
-    clock = middle - residual.local[trial, 0] - nominal.clock_s
-    place = seen_place(comparison.readers[trial].observed, residual.local[trial], clock, nominal.at(middle)[0][:, :2])
+    here, along = residual.local[trial], nominal.at(middle)[0][:, 1]
+    place = seen_along(comparison.readers[trial].observed, here, middle - here[0] - nominal.clock_s, along)
     seen = np.zeros((pieces.count, len(MODES)))
     for window, (first, last) in zip(pieces.window, pairwise(pieces.edges), strict=True):
         seen[window] += np.bincount(nominal.mode_at(np.linspace(first, last, 20)), minlength=len(MODES))
@@ -297,5 +297,5 @@ def _windows(
         information=information,
         prior_sigma=prior,
         mode=tuple(MODES[k] for k in seen.argmax(axis=1)),
-        place_y_m=np.array([float(np.mean(place[pieces.window == k, 1])) for k in range(pieces.count)]),
+        place_y_m=np.array([float(np.mean(place[pieces.window == k])) for k in range(pieces.count)]),
     )

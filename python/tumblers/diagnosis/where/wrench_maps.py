@@ -93,12 +93,15 @@ def wrench_regions(missing: MissingWrench) -> tuple[Region, ...]:
     """
     scaled = np.array([mean / sigma for mean, sigma in missing.by_frequency.values()])
     excess = np.maximum(np.sum(scaled**2 - 1.0, axis=0), 0.0)
-    greatest = np.max(np.abs(scaled), axis=0)
+    clearest, greatest = np.argmax(np.abs(scaled), axis=0), np.max(np.abs(scaled), axis=0)
+    averages = list(missing.by_frequency.values())
     regions = []
     for component in np.flatnonzero(greatest > SIGNIFICANT):
         share = float(excess[component] / max(float(excess.sum()), 1e-12))
         axis = "missing_force" if component < 3 else "missing_torque"
-        regions.append(Region(axis, share, value=_COMPONENTS[component % 3], sigmas=float(greatest[component])))
+        mean, sigma = (float(values[component]) for values in averages[clearest[component]])
+        value, sigmas = _COMPONENTS[component % 3], float(greatest[component])
+        regions.append(Region(axis, share, value=value, sigmas=sigmas, missing=(mean, sigma)))
     return tuple(sorted(regions, key=lambda region: -region.share_of_gap))
 
 

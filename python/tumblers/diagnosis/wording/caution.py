@@ -87,6 +87,11 @@ def _of_trials(diagnosis: Diagnosis) -> list[str]:
     lost = [f.trial for f in diagnosis.floors if f.frames > 0 and f.lost > _MANY_LOST * f.frames]
     if lost:
         said.append(f"more than half of the frames are lost in {', '.join(lost)}.")
+    if diagnosis.z_origin_tolerance_m and diagnosis.dataset.sensor.z_origin_tolerance_m is None:
+        said.append(
+            "heights were taken to be from a zero of their own in each trial: the data ask for it, the sensor does not "
+            "say. That hides what raises the robot all along. State z_origin_tolerance_m, 0 if z is from the substrate."
+        )
     empty = [f.trial for f in diagnosis.floors if f.compared == 0]
     if empty:
         said.append(f"nothing could be compared in {', '.join(empty)}.")
