@@ -61,7 +61,7 @@ def octahedron(x: float, y: float, z: float) -> Hull:
 
 
 BAR = (lengths(4e-4, 1e-3), st.floats(0.1, 0.45), lengths(5e-5, 2e-4), st.floats(1.5, 4.0), lengths(1e-4))
-# Wide enough for a draft of 1° over the greatest width.
+# Wide enough for a draft of 0.3° over the greatest width, a flat spike too.
 DRAFTABLE = st.one_of(
     st.builds(Cuboid, length_m=lengths(1e-4), width_m=lengths(), height_m=lengths(1e-4)),
     st.builds(spiked, *BAR),
@@ -89,7 +89,7 @@ def robots(draw: st.DrawFn) -> Robot:
         shape=draw(DRAFTABLE if drafted else UNDRAFTED),
         magnetization_A_per_m=draw(st.floats(0, 1e5)),
         magnetic_volume_m3=draw(st.none() | st.floats(0, 1e-10)),
-        draft_deg=draw(st.floats(0, 1.0)) if drafted else 0.0,
+        draft_deg=draw(st.floats(0, 0.3)) if drafted else 0.0,
         draft_model=draw(st.sampled_from(["geometric", "as_released"])),
         center_of_mass_m=draw(st.tuples(*[st.floats(-1e-6, 1e-6)] * 3)),
         **draw(MASS | st.fixed_dictionaries({"density_kg_per_m3": st.floats(500, 9000)})),
