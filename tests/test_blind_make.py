@@ -159,6 +159,8 @@ def test_every_effect_has_its_turn_in_forty_datasets() -> None:
 
 def test_strength_takes_out_what_the_sensor_may_be_off() -> None:
     lab, jitter = draw_lab(np.random.default_rng(2))
+    # A lab whose zero of z is left open would be diagnosed twice where a cause raises the robot.
+    assert lab.sensor.z_origin_tolerance_m == 0.0
     frames = [lab.frames(plan) for plan in lab.plans]
     tracked = [i for i, plan in enumerate(lab.plans) if plan.tracked]
     alone = lab.with_plans(tuple(lab.plans[i] for i in tracked))

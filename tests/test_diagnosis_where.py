@@ -12,6 +12,7 @@ from tumblers.diagnosis.gap.pose import body_axis, heading_of, tilt_of
 from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.diagnosis.result import HeatMap, Region
 from tumblers.diagnosis.where.localise import localise
+from tumblers.diagnosis.where.seen_along import seen_along
 from tumblers.diagnosis.where.wrench import missing_wrench
 from tumblers.effects import get
 from tumblers.effects.base import Effect
@@ -135,6 +136,31 @@ def test_a_robot_that_stays_has_its_gap_where_it_was_seen() -> None:
     missing = missing_wrench(comparison, comparison.residual(comparison.nominal_paths), comparison.nominal_paths)
     assert missing is not None
     assert max(float(label.split("–")[1].removesuffix(" mm")) for label in missing.by_place) < 1e3 * stays + 0.2
+
+
+def test_a_mistracked_frame_is_no_place() -> None:
+    dataset = lab(seed=5)
+    comparison = Comparison(dataset, Simulator(dataset, 1))
+    observed, time = comparison.readers[0].observed, comparison.readers[0].observed.time_s
+    right = observed.values["y"]
+    wrong = right.copy()
+    wrong[len(wrong) // 2] += 5e-3
+    mistracked = replace(observed, values={**observed.values, "y": wrong})
+    seen = seen_along(mistracked, np.zeros(4), time, np.full(len(time), np.nan))
+    # A robot goes on by less than this in a frame.
+    assert np.max(np.abs(seen - right)) < 5e-4
+    nowhere = replace(observed, values={**observed.values, "y": np.full(len(time), np.nan)})
+    np.testing.assert_array_equal(seen_along(nowhere, np.zeros(4), time, right), right)
+
+
+def test_a_gap_across_is_no_place_of_itself() -> None:
+    dataset = lab(seed=5)
+    track = dataset.trial("f5").track
+    assert track is not None
+    regions = where(shifted(dataset, "f5", "x_m", 120e-6 * (track.time_s > 0.4)))[0]
+    assert of(regions, "channel")[0].value == "x"
+    # The model goes straight: a region in x would be the gap that was put there.
+    assert all(r.high is not None and r.high < 60e-6 for r in of(regions, "position_x_m"))
 
 
 def test_rolloff_lies_at_high_frequency() -> None:

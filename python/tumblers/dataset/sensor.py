@@ -125,6 +125,11 @@ class Sensor:
         return Camera() if self.tracked_point is None else Camera(tracked_point=self.tracked_point)
 
     @property
+    def height_tolerance_m(self) -> float:
+        """Within what the zero of heights is fitted, m: not at all where nothing is stated."""
+        return self.z_origin_tolerance_m or 0.0
+
+    @property
     def x_axis_px(self) -> Pixel:
         """Direction of the substrate's +x in the image: to the right of +y as seen from above, x = y × z."""
         right, down = self.y_axis_px

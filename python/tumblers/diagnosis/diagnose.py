@@ -204,7 +204,7 @@ class _Conclusion:
             dataset=self.dataset,
             model=comparison.simulator.model,
             tracked_point=comparison.dataset.sensor.camera.tracked_point,
-            z_origin_tolerance_m=comparison.dataset.sensor.z_origin_tolerance_m or 0.0,
+            z_origin_tolerance_m=comparison.dataset.sensor.height_tolerance_m,
             verdict=verdict,
             effects=estimates,
             chosen=chosen.effects,
@@ -352,8 +352,8 @@ def _assumptions(dataset: Dataset, comparison: Comparison, attribution: Attribut
     given = "magnetic_torque" in comparison.dataset.model_given
     stated = "as the dataset states" if given else "which the dataset leaves open"
     origin = f"{1e6 * sensor.origin_tolerance_m:g} µm"
-    if sensor.z_origin_tolerance_m:
-        origin += f", along z {1e6 * sensor.z_origin_tolerance_m:g} µm"
+    if sensor.height_tolerance_m > 0.0:
+        origin += f", along z {1e6 * sensor.height_tolerance_m:g} µm"
     said = [
         f"The magnetic torque is taken by the scheme '{simulator.model.magnetic_torque}', {stated}.",
         "The robot starts at rest on the substrate, long axis along +y, when the field starts.",
@@ -400,7 +400,7 @@ def _assumptions(dataset: Dataset, comparison: Comparison, attribution: Attribut
         said.append(
             "Heights are taken to be measured from a zero of their own in each trial, not from the substrate: the data "
             "clearly ask for it, and the sensor does not say."
-            if sensor.z_origin_tolerance_m
+            if sensor.height_tolerance_m > 0.0
             else "Heights are taken to be measured from the substrate, for the sensor does not say."
         )
     if attribution.refused:

@@ -99,7 +99,7 @@ class NuisanceFit:
         for i, reader in enumerate(readers):
             clock = sensor.clock_tolerance_s(reader.observed.frame_interval_s)
             along = sensor.origin_tolerance_m
-            self.local_bounds[i] = clock, along, along, sensor.z_origin_tolerance_m or 0.0
+            self.local_bounds[i] = clock, along, along, sensor.height_tolerance_m
         sigmas = self.local_bounds * np.array([_CLOCK_SIGMA, _ORIGIN_SIGMA, _ORIGIN_SIGMA, _ORIGIN_SIGMA])
         self.local_sigmas = np.maximum(sigmas, 1e-12)
         camera = np.array([radians(sensor.heading_tolerance_deg), sensor.scale_tolerance])

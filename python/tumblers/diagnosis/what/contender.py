@@ -15,7 +15,15 @@ from ..gap.comparison import Comparison, Residual
 from .margins import SECOND
 from .step_credit import step_credit
 
-__all__ = ["Contender", "likeliest", "likeliest_first", "of_fit", "of_nominal", "parsimonious_total"]
+__all__ = [
+    "Contender",
+    "likeliest",
+    "likeliest_first",
+    "of_fit",
+    "of_nominal",
+    "parsimonious_total",
+    "whole_log_likelihood",
+]
 
 Floats = NDArray[np.float64]
 
@@ -128,6 +136,19 @@ def parsimonious_total(contender: Contender, comparison: Comparison) -> float:
         The dataset.
     """
     return contender.total + comparison.objective_of(SECOND) * (len(contender.names) - 1)
+
+
+def whole_log_likelihood(contender: Contender, comparison: Comparison) -> float:
+    """Return ln of a contender's likelihood, with what a total leaves out: it compares with another comparison's.
+
+    Parameters
+    ----------
+    contender
+        Any.
+    comparison
+        The one that it was made in.
+    """
+    return -(contender.total + comparison.nominal_log_determinant) / comparison.objective_of(1.0)
 
 
 def _total(contender: Contender) -> float:

@@ -24,7 +24,7 @@ from ..fitting.fitter import Fitter
 from ..gap.comparison import Comparison
 from ..gap.predictive import is_right
 from .attribute import Attribution
-from .contender import Contender, likeliest, of_nominal
+from .contender import Contender, likeliest, of_nominal, whole_log_likelihood
 from .margins import CLEAR
 from .own_noise import POLISH_POINTS, against_itself, by_itself
 
@@ -70,5 +70,4 @@ def _likeliest(comparison: Comparison, those: Sequence[Contender], fit: bool) ->
             one = against_itself(fitter, contender.fit)
             found.append(by_itself(fitter, one, POLISH_POINTS) if fit else one)
     leading = likeliest(found)
-    total = leading.total + comparison.nominal_log_determinant
-    return -total / comparison.objective_of(1.0), is_right(comparison, leading.residual)
+    return whole_log_likelihood(leading, comparison), is_right(comparison, leading.residual)

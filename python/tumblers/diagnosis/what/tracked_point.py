@@ -23,7 +23,7 @@ from ..fitting.hypothesis import Hypothesis
 from ..gap.comparison import Comparison
 from ..gap.predictive import is_wanting
 from ..gap.simulator import Simulator
-from .contender import likeliest, of_nominal
+from .contender import likeliest, of_nominal, whole_log_likelihood
 from .margins import CLEAR
 from .own_noise import against_itself
 
@@ -69,10 +69,7 @@ def with_tracked_point(dataset: Dataset, kinds: Sequence[type[Effect]], jobs: in
 
 
 def _likeliest(dataset: Dataset, offset: bool, jobs: int) -> tuple[float, bool]:
-    """Return ln of the likelihood of the nominal model or, where considered, of an offset; and whether it leaves a gap.
-
-    But for what is the same for both readings: a total leaves out the noise around the nominal model, which is not.
-    """
+    """Return ln of the likelihood of the nominal model or, where considered, an offset, and whether there is a gap."""
     fitter = Fitter(Comparison(dataset, Simulator(dataset, jobs)))
     fitter.take_likeliest_noise(())
     best = nominal = of_nominal(fitter)
@@ -82,5 +79,4 @@ def _likeliest(dataset: Dataset, offset: bool, jobs: int) -> tuple[float, bool]:
         (starts,) = fitter.scan([hypothesis], [np.zeros(len(hypothesis.neutral))], nominal.residual)
         _, start = starts[0]
         best = likeliest([nominal, against_itself(fitter, fitter.fit(hypothesis, start, evaluations=_POINTS))])
-    total = best.total + fitter.comparison.nominal_log_determinant
-    return -total / fitter.comparison.objective_of(1.0), is_wanting(fitter.comparison, best.residual)
+    return whole_log_likelihood(best, fitter.comparison), is_wanting(fitter.comparison, best.residual)
