@@ -11,8 +11,8 @@ from tumblers.diagnosis.fitting.fitter import Fitter
 from tumblers.diagnosis.gap.comparison import Comparison
 from tumblers.diagnosis.gap.simulator import LONGEST_STEP_S, Simulator
 from tumblers.diagnosis.what.contender import Contender, of_fit, of_nominal
-from tumblers.diagnosis.what.last_fits import _equally_far, _from_counterparts, concluded
-from tumblers.diagnosis.what.margins import CLEAR, SECOND
+from tumblers.diagnosis.what.last_fits import _equally_far, _from_counterparts, _near_the_first, concluded
+from tumblers.diagnosis.what.margins import CLEAR, OPEN, SECOND
 from tumblers.diagnosis.what.own_noise import against_the_best, beside, lead_around, settled_at
 from tumblers.diagnosis.what.search import Search
 from tumblers.effects.friction_coefficient import FrictionCoefficient
@@ -34,7 +34,7 @@ def test_the_leader_is_held_in_a_step_that_is_short_enough_for_it() -> None:
     (hypothesis,) = search.possible
     there = (np.array([0.5, 0.0]) - hypothesis.neutral) / hypothesis.scale
     leader = of_fit(fitter, fitter.fit(hypothesis, there, evaluations=1))
-    found, still = concluded(fitter, nominal, [leader], quiet)
+    found, still = concluded(fitter, nominal, [leader], 0, quiet)
     assert fitter.comparison.simulator.step_s[0] < LONGEST_STEP_S
     assert found.settled
     assert found.total == pytest.approx(beside(fitter, found, found).total, rel=1e-9)
@@ -85,7 +85,7 @@ def test_what_may_be_named_is_fitted_as_far_though_pairs_fit_better(monkeypatch:
     monkeypatch.setattr("tumblers.diagnosis.what.last_fits._PAIRS_EQUALLY_FAR", 2)
     monkeypatch.setattr("tumblers.diagnosis.what.last_fits.as_far", noted)
     monkeypatch.setattr("tumblers.diagnosis.what.last_fits.nested", lambda _fitter, single, _pairs: single)
-    made = _equally_far(fitter, [*pairs, *far_off, alone], quiet)
+    made = _equally_far(fitter, [*pairs, *far_off, alone], 0, quiet)
     assert made[0].names == pairs[0].names
     assert ("size_error",) in fitted
     # Neutral effects explain nothing.
@@ -129,7 +129,7 @@ def test_a_pair_that_is_clearly_behind_is_fitted_from_where_the_best_pair_is(
     monkeypatch.setattr("tumblers.diagnosis.what.last_fits.as_far", lambda _fitter, contender, _alike: contender)
     monkeypatch.setattr("tumblers.diagnosis.what.last_fits.nested", lambda _fitter, single, _pairs: single)
     monkeypatch.setattr("tumblers.diagnosis.what.last_fits._from_counterparts", noted)
-    made = _equally_far(fitter, [*pairs, alone], quiet)
+    made = _equally_far(fitter, [*pairs, alone], 0, quiet)
     assert made[0].names == (pairs[0].names if leads else alone.names)
     assert asked == ([(pairs[2].names, pairs[0].names)] if leads else [])
 
@@ -180,7 +180,7 @@ def test_the_last_fits_start_from_where_the_best_of_all_is(monkeypatch: pytest.M
         return contender
 
     monkeypatch.setattr("tumblers.diagnosis.what.last_fits._from_counterparts", noted)
-    made = {contender.names: contender for contender in _equally_far(fitter, [pair, worse, stuck], quiet)}
+    made = {contender.names: contender for contender in _equally_far(fitter, [pair, worse, stuck], 0, quiet)}
     ((contender, best),) = asked
     assert {contender.names, best.names} == {tilt.names, stuck.names}
     assert best.total == min(made[names].total for names in (tilt.names, stuck.names))
@@ -204,7 +204,7 @@ def test_a_pair_leads_where_its_second_effect_adds_what_it_must(
     monkeypatch.setattr(
         "tumblers.diagnosis.what.last_fits._from_counterparts", lambda _fitter, other, _best, _each: other
     )
-    found = _equally_far(fitter, [pair, tilt, gradient], quiet)
+    found = _equally_far(fitter, [pair, tilt, gradient], 0, quiet)
     assert found[0].names == (pair.names if leads else tilt.names)
 
 
@@ -217,3 +217,44 @@ def test_a_lead_around_another_is_against_one_noise_which_both_follow() -> None:
     assert theirs - mine > 100.0
     # Where a search left it the other gains more by being fitted on.
     assert lead < theirs - mine - 50.0
+
+
+def test_the_noise_of_the_first_does_not_hide_what_is_near_by_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    # Nothing is at work, so that all are near.
+    dataset = measure(plan(PLANS[:3]), seed=3)
+    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
+    kinds = (SizeError, FrictionCoefficient, SubstrateTilt, ViscousDrag, StrayFieldGradient)
+    those = [settled_at(fitter, h, np.zeros(len(h.low))) for h in Search(fitter, list(kinds), quiet, 0).possible]
+    first, by_first, *others = those
+    ranked = [first, by_first, *(replace(c, cost=c.cost + 0.1 * k) for k, c in enumerate(others, start=1))]
+    monkeypatch.setattr("tumblers.diagnosis.what.last_fits._EQUALLY_FAR", 2)
+    pairs, singles = _near_the_first(fitter, ranked)
+    assert pairs == []
+    assert len(singles) == 3
+    assert singles[0] == 0
+    # The likeliest by its own, of those that the first's noise puts behind.
+    assert singles[2] == min({1, 2, 3, 4} - {singles[1]}, key=lambda k: ranked[k].total)
+    flattered = [ranked[0], *(replace(c, settled=False) for c in ranked[1:])]
+    assert len(_near_the_first(fitter, flattered)[1]) == 2
+
+
+def test_what_is_open_beside_one_effect_is_looked_around(monkeypatch: pytest.MonkeyPatch) -> None:
+    dataset = measure(plan(PLANS[:3]), seed=3)
+    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
+    kinds = (SizeError, FrictionCoefficient, SubstrateTilt)
+    those = [settled_at(fitter, h, np.zeros(len(h.low))) for h in Search(fitter, list(kinds), quiet, 0).possible]
+    far = replace(those[2], cost=those[2].cost + 2.0 * fitter.comparison.objective_of(OPEN))
+    asked: list[tuple[str, ...]] = []
+
+    def noted(_fitter: Fitter, contender: Contender, seed: int, _tell: object) -> Contender:
+        assert seed == 7
+        asked.append(contender.names)
+        return contender
+
+    monkeypatch.setattr("tumblers.diagnosis.what.last_fits.shaken", noted)
+    monkeypatch.setattr("tumblers.diagnosis.what.last_fits.as_far", lambda _fitter, contender, _alike: contender)
+    monkeypatch.setattr(
+        "tumblers.diagnosis.what.last_fits._from_counterparts", lambda _fitter, contender, _best, _each: contender
+    )
+    _equally_far(fitter, [*those[:2], far], 7, quiet)
+    assert sorted(asked) == [("friction_coefficient",), ("size_error",)]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -13,6 +15,7 @@ from tumblers.diagnosis.what import nearby
 from tumblers.diagnosis.what.contender import of_fit
 from tumblers.diagnosis.what.nearby import _moved_alone, _points_around, shaken
 from tumblers.effects.base import Effect
+from tumblers.effects.magnetization_strength import MagnetizationStrength
 from tumblers.effects.size_error import SizeError
 from tumblers.effects.stray_field_gradient import StrayFieldGradient
 
@@ -77,3 +80,31 @@ def test_one_that_is_moved_alone_is_fitted_on_beside_the_best_of_all(
     shaken(fitter, of_fit(fitter, fit), 0, quiet)
     first = starts[: nearby._FITS + 1]
     assert [start in alone for start in first] == [False, False, True]
+
+
+def test_of_two_parameters_points_over_the_whole_range_are_tried_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    fitter = coarse_lab(SizeError(length_factor=1.05))
+    scenarios = [fitter.comparison.simulator.nominal(i) for i in fitter.trials]
+    tried: list[np.ndarray] = []
+
+    def noted(_fitter: Fitter, hypothesis: Hypothesis, points: list[np.ndarray], count: int) -> list[tuple[float, Any]]:
+        tried.append(np.array(points))
+        return [(0.0, point) for point in points[:count]]
+
+    monkeypatch.setattr(nearby, "least", noted)
+    fitter.take_likeliest_noise(())
+    for kind in (SizeError, MagnetizationStrength):
+        hypothesis = Hypothesis.of(kind, scenarios)
+        tried.clear()
+        shaken(fitter, of_fit(fitter, fitter.fit(hypothesis, np.zeros(len(hypothesis.low)), evaluations=1)), 0, quiet)
+        within = tried[0][nearby._POINTS :]
+        if hypothesis.free == 1:
+            assert len(within) == 0
+            continue
+        assert len(within) == nearby._WITHIN
+        assert np.all((within >= hypothesis.low) & (within <= hypothesis.high))
+        # In each quarter of the range of either one.
+        quarters = np.floor(4.0 * (within - hypothesis.low) / (hypothesis.high - hypothesis.low))
+        assert all(set(column) == {0.0, 1.0, 2.0, 3.0} for column in quarters.T)
+        # The looks that follow are around what was found.
+        assert all(len(points) <= nearby._POINTS for points in tried[1:])

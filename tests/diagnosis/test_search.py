@@ -102,3 +102,33 @@ def test_where_the_nominal_model_is_right_too_what_leads_is_held_against_its_own
     held = [contender for contender in others if contender.settled]
     assert len(held) >= OWN
     assert held[0].total == pytest.approx(beside(fitter, held[0], held[0]).total, rel=1e-9)
+
+
+@pytest.mark.parametrize(("right", "worth", "searched"), [(True, True, 1), (False, False, 2), (False, True, 1)])
+def test_where_longer_steps_hide_the_gap_the_right_ones_are_searched(
+    right: bool, worth: bool, searched: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fitter = coarse_lab(SizeError(length_factor=1.1))
+    comparison = fitter.comparison
+    comparison.simulator.step_s = [0.5 * LONGEST_STEP_S] * 3
+    comparison._start()
+    search = Search(fitter, [CATALOGUE[name] for name in MANY_KINDS[:2]], quiet, 0)
+    steps: list[float] = []
+
+    def longer() -> bool:
+        return max(comparison.simulator.step_s) > 0.5 * LONGEST_STEP_S
+
+    def found(nominal: Contender) -> list[Contender]:
+        steps.append(max(comparison.simulator.step_s))
+        first, *others = search._singles(nominal)
+        assert first.names == ("size_error",)
+        # No likelier than the nominal model is what longer steps leave of it.
+        return [first if worth or not longer() else replace(first, cost=nominal.total), *others]
+
+    monkeypatch.setattr(search, "_far_and_wide", found)
+    monkeypatch.setattr("tumblers.diagnosis.what.search.is_right", lambda *_: right and longer())
+    assert search.contenders()[0].names == ("size_error",)
+    assert len(steps) == searched
+    # Where they do not, all of it is done in the longer ones, which are the quicker.
+    assert steps[-1] == (LONGEST_STEP_S if searched == 1 and not right else 0.5 * LONGEST_STEP_S)
+    assert not longer()

@@ -183,7 +183,7 @@ def attribute(
             ranked = _with_tolerated(fitter, ranked, dispersion)
         if resolves(ranked[0].effects):
             break
-        contenders, compared = in_steps_of(fitter, ranked[0], contenders, tell), False
+        contenders, compared = in_steps_of(fitter, ranked[0], contenders, seed, tell), False
     return seen_from_the_best(fitter, Attribution(tuple(ranked), dispersion, right))
 
 

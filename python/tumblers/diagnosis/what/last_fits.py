@@ -15,17 +15,21 @@ from ..fitting.hypothesis import Hypothesis
 from .contender import Contender, likeliest, of_nominal, parsimonious_total
 from .counterpart import as_good
 from .margins import AS_GOOD, CLEAR, OPEN
+from .nearby import shaken
 from .own_noise import MOST_OWN, OWN, again, against_the_best, by_itself, each_by_itself, settled, settled_at
 from .pairs import nested
 from .sparse import as_far
 
 __all__ = ["concluded", "in_steps_of", "resolved"]
 
-# What is open, or as good by `AS_GOOD`, is fitted as far, so many single effects and pairs at most.
-_EQUALLY_FAR, _PAIRS_EQUALLY_FAR = 3, 4
+# What is open, or as good by `AS_GOOD`, is fitted as far, so many single effects and pairs at most by the noise of the
+# first, and so many single effects more by their own.
+_EQUALLY_FAR, _PAIRS_EQUALLY_FAR, _OWN_EQUALLY_FAR = 3, 4, 1
 
 
-def in_steps_of(fitter: Fitter, leader: Contender, contenders: Sequence[Contender], tell: OnPhase) -> list[Contender]:
+def in_steps_of(
+    fitter: Fitter, leader: Contender, contenders: Sequence[Contender], seed: int, tell: OnPhase
+) -> list[Contender]:
     """Return the nominal model and the others again, in steps that are short enough for one of them.
 
     Parameters
@@ -36,15 +40,19 @@ def in_steps_of(fitter: Fitter, leader: Contender, contenders: Sequence[Contende
         One of the contenders.
     contenders
         What a search found, the nominal model among them.
+    seed
+        Of the points around fits.
     tell
         Is told the phase, how much of it is done, and of how much.
     """
     nominal = next(c for c in contenders if not c.names)
     others = [c for c in contenders if c.names and c.names != leader.names]
-    return concluded(fitter, nominal, [leader, *others], tell)
+    return concluded(fitter, nominal, [leader, *others], seed, tell)
 
 
-def concluded(fitter: Fitter, nominal: Contender, contenders: Sequence[Contender], tell: OnPhase) -> list[Contender]:
+def concluded(
+    fitter: Fitter, nominal: Contender, contenders: Sequence[Contender], seed: int, tell: OnPhase
+) -> list[Contender]:
     """Return the nominal model and all others, each against the noise that counts.
 
     Parameters
@@ -55,12 +63,14 @@ def concluded(fitter: Fitter, nominal: Contender, contenders: Sequence[Contender
         The nominal model.
     contenders
         The others, the leader first.
+    seed
+        Of the points around fits.
     tell
         Is told the phase, how much of it is done, and of how much.
     """
     while True:
         nominal, made = resolved(fitter, nominal, contenders, tell)
-        contenders = _equally_far(fitter, each_by_itself(fitter, made, tell), tell)
+        contenders = _equally_far(fitter, each_by_itself(fitter, made, tell), seed, tell)
         # Against its own noise another may lead, which asks by itself for shorter steps still.
         if fitter.comparison.simulator.resolves(contenders[0].effects):
             return against_the_best(fitter, nominal, contenders)
@@ -91,7 +101,7 @@ def resolved(
     return nominal, made
 
 
-def _equally_far(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase) -> list[Contender]:
+def _equally_far(fitter: Fitter, contenders: Sequence[Contender], seed: int, tell: OnPhase) -> list[Contender]:
     """Fit what may be as good as the best as far as that, without what it does not need, and from where the best is."""
     comparison = fitter.comparison
     made = sorted(contenders, key=lambda contender: parsimonious_total(contender, comparison))
@@ -114,6 +124,11 @@ def _equally_far(fitter: Fitter, contenders: Sequence[Contender], tell: OnPhase)
     for n, (k, leading) in enumerate(behind):
         tell("from where the best is", n, len(behind))
         made[k] = _from_counterparts(fitter, made[k], made[leading], each)
+    if len(best.names) == 1:
+        # Where motion hops all that was fitted from one side may have stopped there.
+        open_to = made[singles[0]].total + comparison.objective_of(OPEN)
+        for k in [k for k in singles if made[k].settled and made[k].total < open_to]:
+            made[k] = shaken(fitter, made[k], seed, tell)
     # A pair that adds less than a second effect must neither leads nor lends its noise: that would favour its own parts
     # before others that do the same.
     return sorted(made, key=lambda contender: parsimonious_total(contender, comparison))
@@ -142,7 +157,11 @@ def _near_the_first(fitter: Fitter, contenders: Sequence[Contender]) -> tuple[li
     # flatters.
     pairs = [k for k in near if len(contenders[k].names) > 1]
     singles = sorted((k for k in near if len(contenders[k].names) == 1), key=lambda k: (k != 0, costs[k]))
-    return pairs[:_PAIRS_EQUALLY_FAR], singles[:_EQUALLY_FAR]
+    # Nor must the noise of the first hide what is near by its own.
+    waiting = singles[_EQUALLY_FAR:]
+    own = [k for k in waiting if contenders[k].settled and scores[k] < open_to]
+    singles = singles[:_EQUALLY_FAR] + sorted(own, key=lambda k: scores[k])[:_OWN_EQUALLY_FAR]
+    return pairs[:_PAIRS_EQUALLY_FAR], singles
 
 
 def _from_counterparts(fitter: Fitter, contender: Contender, best: Contender, each: Sequence[Hypothesis]) -> Contender:

@@ -9,10 +9,12 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import qmc
 
 from ...progress import OnPhase
 from ..fitting.fit import Fit
 from ..fitting.fitter import Fitter
+from ..fitting.hypothesis import Hypothesis
 from .contender import Contender, likeliest_first
 from .least import least
 from .margins import CLEAR, ENOUGH
@@ -26,6 +28,8 @@ Floats = NDArray[np.float64]
 # which each parameter alone is moved either way. With such moves a pair was found in a dataset with a known truth in
 # which the points in all directions had led nowhere.
 _POINTS, _SPREADS, _SHARES, _ALONE = 18, (1.0, 2.0, 4.0), (0.02, 0.05, 0.1), (0.05, 0.15)
+# Of so few parameters a valley may be met by so many points over the range.
+_FEW, _WITHIN = (2,), 32
 # Fits that are looked around, how many of the points around one are fitted on in so many trial points, beside one with
 # a parameter moved alone, and how often.
 _SHAKEN, _FITS, _FIT_POINTS, _SHAKES = 3, 2, 3, 2
@@ -75,6 +79,8 @@ def shaken(fitter: Fitter, contender: Contender, seed: int, tell: OnPhase) -> Co
         hypothesis = best.fit.hypothesis
         fitter.take_likeliest_noise(best.effects)
         around = _points_around(best.fit, fitter.comparison.alike, rng)
+        if k == 0 and hypothesis.free in _FEW:
+            around += _points_within(hypothesis, rng)
         starts = [point for _, point in least(fitter, hypothesis, around, _FITS)]
         if alone := _moved_alone(best.fit):
             starts += [point for _, point in least(fitter, hypothesis, alone, 1)]
@@ -98,6 +104,12 @@ def _points_around(fit: Fit, alike: float, rng: np.random.Generator) -> list[Flo
     low, high = fit.hypothesis.low, fit.hypothesis.high
     moves = [spreads[k % len(spreads)] @ rng.normal(size=count) for k in range(_POINTS)]
     return [np.clip(fit.point + move, low, high) for move in moves]
+
+
+def _points_within(hypothesis: Hypothesis, rng: np.random.Generator) -> list[Floats]:
+    """Return points evenly over the range."""
+    sobol = qmc.Sobol(len(hypothesis.neutral), rng=rng)
+    return list(hypothesis.low + sobol.random(_WITHIN) * (hypothesis.high - hypothesis.low))
 
 
 def _moved_alone(fit: Fit) -> list[Floats]:

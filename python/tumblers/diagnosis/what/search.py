@@ -108,26 +108,41 @@ class Search:
             return self._of_strong(nominal)
         singles = settled(self.fitter, singles, self.tell, OWN, MOST_OWN)
         if singles[0].total > nominal.total - self.worth:
-            return concluded(self.fitter, nominal, singles, self.tell)
+            return concluded(self.fitter, nominal, singles, self.seed, self.tell)
         # What moves little near neutral may do much far away, and the same as what leads.
         singles = settled(self.fitter, self._elsewhere(singles, ()), self.tell)
         singles = all_shaken(self.fitter, singles, self.seed, self.tell)
         made = self._with_shaken_pair(singles, self.pairing.found(singles, strong=False))
-        return concluded(self.fitter, nominal, made, self.tell)
+        return concluded(self.fitter, nominal, made, self.seed, self.tell)
 
     def _of_strong(self, nominal: Contender) -> list[Contender]:
         """Search in longer steps, and hold what is found in the right ones.
 
-        A strong cause moves the robot by much more than the longer steps get wrong.
+        A strong cause moves the robot by much more than the longer steps get wrong. Where it does not, so that they
+        show no gap or nothing that is worth a look, the right ones are searched.
         """
-        with self.comparison.in_longer_steps():
-            self.fitter.take_likeliest_noise(())
-            found = self._far_and_wide(of_nominal(self.fitter))
+        found = self._in_longer_steps() or self._far_and_wide(nominal)
         if not found:
             return [nominal]
         made = self._in_short_steps(found)
         self.fitter.take_likeliest_noise(())
-        return concluded(self.fitter, of_nominal(self.fitter), made, self.tell)
+        return concluded(self.fitter, of_nominal(self.fitter), made, self.seed, self.tell)
+
+    def _in_longer_steps(self) -> list[Contender]:
+        """Return what a search in longer steps finds, the likeliest first; nothing where they hide the gap."""
+        with self.comparison.in_longer_steps():
+            self.fitter.take_likeliest_noise(())
+            nominal = of_nominal(self.fitter)
+            if is_right(self.comparison, nominal.residual):
+                found = []
+            else:
+                found = self._far_and_wide(nominal)
+                # Steps may have been halved for what leads, with the noise.
+                self.fitter.take_likeliest_noise(())
+                if found and found[0].total > of_nominal(self.fitter).total - self.worth:
+                    found = []
+        self.fitter.take_likeliest_noise(())
+        return found
 
     def _in_short_steps(self, found: Sequence[Contender]) -> list[Contender]:
         """Hold what was found in longer steps in those of the moment, and fit the best on."""
