@@ -103,8 +103,11 @@ def test_what_one_has_found_of_a_relief_is_right_for_another_too(monkeypatch: py
     lucky = settled_at(fitter, relief, right, evaluations=2)
     starts: list[float] = []
 
-    def by_clouds(_fitter: Any, contender: Contender, *_rest: Any) -> Contender:
+    rated: list[int] = []
+
+    def by_clouds(_fitter: Any, contender: Contender, rates: Sequence[Any], *_rest: Any) -> Contender:
         starts.append(contender.total)
+        rated.append(len(rates))
         return lucky if len(contender.names) == 1 else pair
 
     monkeypatch.setattr(guided, "_by_clouds", by_clouds)
@@ -118,12 +121,27 @@ def test_what_one_has_found_of_a_relief_is_right_for_another_too(monkeypatch: py
         # What is searched later starts with what was found before.
         near = lucky.total + 0.05 * (pair.total - lucky.total)
         assert [start < near for start in starts] == ([False, True] if order[0] == 0 else [False, False])
+    # And is near then: runs of its own are enough.
+    assert rated == [3, 1] * 2
     # What leaves no gap is not searched around again.
     monkeypatch.setattr(guided, "is_wanting", lambda *_: False)
     starts.clear()
     made = found_again(fitter, [alone, pair], [0, 1], 0, quiet)
     assert starts == [alone.total]
     assert made[1].total == pytest.approx(lucky.total, abs=0.05 * (pair.total - lucky.total))
+
+
+def test_where_the_first_leaves_a_gap_though_it_is_drawn_the_next_is_drawn_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    fitter, relief = lab()
+    stuck = settled_at(fitter, relief, point_of(TRUTH, relief), evaluations=1)
+    rated: list[int] = []
+
+    def by_clouds(_fitter: Any, _contender: Any, rates: Sequence[Any], *_rest: Any) -> None:
+        rated.append(len(rates))
+
+    monkeypatch.setattr(guided, "_by_clouds", by_clouds)
+    found_again(fitter, [stuck, stuck], [0, 1], 0, quiet)
+    assert rated == [3, 3]
 
 
 @pytest.mark.parametrize(("first", "clouds"), [(None, 36), (12, 60), (13, 36)])

@@ -72,13 +72,13 @@ def found_again(
     """
     made, told = list(contenders), 0
     seen = any(guide is not None for guide in fitter.comparison.simulator.guides)
-    rates = _RATES if seen else _RATES[-1:]
     # A cloud has two dimensions at least; along a line a fit finds its way.
     clouded = [k for k in which if made[k].free >= 2]
+    rates = _RATES if seen else _RATES[-1:]
 
     def on_cloud() -> None:
         nonlocal told
-        tell("clouds of points", told, len(clouded) * sum(clouds for _, clouds, _ in rates))
+        tell("clouds of points", told, len(clouded) * sum(clouds for _, clouds, _ in _RATES))
         told += 1
 
     def keep(k: int, other: Contender) -> None:
@@ -100,6 +100,8 @@ def found_again(
         if found is None:
             continue
         keep(k, found)
+        # Where the first clouds lead, the other contenders start: what is left to look for is near.
+        rates = _RATES[-1:]
         if not is_wanting(fitter.comparison, best().residual):
             break
     for k in which:
