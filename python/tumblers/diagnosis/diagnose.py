@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import pi
 from time import perf_counter
 
@@ -27,6 +28,7 @@ from .gap.job import Job
 from .gap.loss import robust_cost
 from .gap.predictive import is_right
 from .gap.simulator import Simulator
+from .how_far.followed import LEAST_FOLLOWED, followed
 from .how_far.held_out import HeldOut, folds, held_out, is_foretold, shrink
 from .how_far.overlay import overlays
 from .result import EffectEstimate, HeatMap, Interval, NextTrial, RankedHypothesis, Region, TrialFloor, Verdict
@@ -140,10 +142,11 @@ class _Conclusion:
         return self.measured[contender.names]
 
     def stands(self, contender: Contender) -> bool:
-        """Return whether a contender stands on trials that its fit had not seen."""
+        """Return whether a contender stands on trials that its fit had not seen, and by more than its noise."""
         gap = shrink(self.fitter, self.held_out(contender), self.seed)
         nominal = self.held_out(self.attribution.nominal)
-        return is_foretold(self.fitter, nominal, self.held_out(contender), gap, contender)
+        foretold = is_foretold(self.fitter, nominal, self.held_out(contender), gap, contender)
+        return foretold and followed(self.fitter, contender) >= LEAST_FOLLOWED
 
     def measure(self) -> list[Contender]:
         """Return the likeliest contenders, what they say of trials left out being known."""
@@ -180,6 +183,8 @@ class _Conclusion:
         verdict, chosen = judge(comparison, attribution, self.stands(best))
         if chosen is not best:
             gap = shrink(self.fitter, nominal, self.seed)
+        if chosen.names:
+            gap = replace(gap, followed=followed(self.fitter, chosen))
         tied = ties(comparison, attribution, chosen, lambda other: self._lead(chosen, other))
 
         estimates, shown = self._estimates(chosen, tied), overlays(self.fitter, nominal, self.held_out(chosen), chosen)

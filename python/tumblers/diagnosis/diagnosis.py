@@ -206,6 +206,7 @@ class Diagnosis:
                 "after": gap.after,
                 "shrink": {"estimate": gap.shrink.estimate, "low": gap.shrink.low, "high": gap.shrink.high},
                 "held_out_trials": list(gap.held_out_trials),
+                "followed": gap.followed,
                 "by_trial": {
                     trial: dict(zip(("before", "after_nuisance_only", "after"), values, strict=True))
                     for trial, values in gap.by_trial.items()

@@ -113,6 +113,10 @@ class Gap:
         Each was left out of a fit once.
     by_trial
         Trial id to (before, after_nuisance_only, after).
+    followed
+        How much nearer the chosen effects bring the model to the data by the sensor's noise alone, a share of the ln of
+        what the nominal model leaves; below 0 if farther, None without effects. Where it is next to nothing, the gap
+        shrinks only because the robot may do anything there with them.
     """
 
     noise_floor: float
@@ -122,6 +126,7 @@ class Gap:
     shrink: Interval
     held_out_trials: tuple[str, ...]
     by_trial: Mapping[str, tuple[float, float, float]]
+    followed: float | None = None
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ...effects.catalogue import CATALOGUE
 from ...field import RotatingField
 from ..diagnosis import Diagnosis
+from ..how_far.followed import LEAST_FOLLOWED
 from ..quantity import handy_unit, percent, rounded, sigmas, with_interval, with_sigma
 from ..result import EffectEstimate, Gap, NextTrial, Region
 from ..where.wrench_maps import SIGNIFICANT
@@ -151,6 +152,14 @@ def headline(diagnosis: Diagnosis) -> str:
         return f"Unexplained: {left}, and {none}."
     partial = " and ".join(f"{phrase.cause}, {phrase.amount.rstrip(',')}" for phrase in phrases)
     fitted = _fitted(diagnosis)
+    if gap.followed is not None and gap.followed < LEAST_FOLLOWED:
+        return (
+            f"Unexplained: {left}. It would be no more than noise if {partial}; but only because the robot could do "
+            "almost anything then: the simulated robot follows the measured one no better."
+            if fitted < gap.noise_floor + _CLOSED
+            else f"Unexplained: {left}, and {none}. The best partial cause is that {partial}; but with it the "
+            "simulated robot follows the measured one no better."
+        )
     if fitted < gap.noise_floor + _CLOSED:
         return (
             f"Unexplained: {left}. It would close, to {_sigmas(fitted)}, if {partial}; but too few trials show it to "
