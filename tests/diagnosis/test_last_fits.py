@@ -238,11 +238,12 @@ def test_the_noise_of_the_first_does_not_hide_what_is_near_by_its_own(monkeypatc
     assert len(_near_the_first(fitter, flattered)[1]) == 2
 
 
-def test_what_is_open_beside_one_effect_is_looked_around(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_rivals_that_are_open_beside_one_effect_are_looked_around(monkeypatch: pytest.MonkeyPatch) -> None:
     dataset = measure(plan(PLANS[:3]), seed=3)
     fitter = Fitter(Comparison(dataset, Simulator(dataset)))
     kinds = (SizeError, FrictionCoefficient, SubstrateTilt)
     those = [settled_at(fitter, h, np.zeros(len(h.low))) for h in Search(fitter, list(kinds), quiet, 0).possible]
+    those[1] = replace(those[1], cost=those[1].cost + 1.0)
     far = replace(those[2], cost=those[2].cost + 2.0 * fitter.comparison.objective_of(OPEN))
     asked: list[tuple[str, ...]] = []
 
@@ -257,4 +258,5 @@ def test_what_is_open_beside_one_effect_is_looked_around(monkeypatch: pytest.Mon
         "tumblers.diagnosis.what.last_fits._from_counterparts", lambda _fitter, contender, _best, _each: contender
     )
     _equally_far(fitter, [*those[:2], far], 7, quiet)
-    assert sorted(asked) == [("friction_coefficient",), ("size_error",)]
+    # The best has been looked around where it came to lead.
+    assert asked == [those[1].names]

@@ -25,6 +25,8 @@ __all__ = ["concluded", "in_steps_of", "resolved"]
 # What is open, or as good by `AS_GOOD`, is fitted as far, so many single effects and pairs at most by the noise of the
 # first, and so many single effects more by their own.
 _EQUALLY_FAR, _PAIRS_EQUALLY_FAR, _OWN_EQUALLY_FAR = 3, 4, 1
+# Rivals of a single effect that are looked around, as it was.
+_LOOKED_AROUND = 2
 
 
 def in_steps_of(
@@ -127,7 +129,8 @@ def _equally_far(fitter: Fitter, contenders: Sequence[Contender], seed: int, tel
     if len(best.names) == 1:
         # Where motion hops all that was fitted from one side may have stopped there.
         open_to = made[singles[0]].total + comparison.objective_of(OPEN)
-        for k in [k for k in singles if made[k].settled and made[k].total < open_to]:
+        rivals = [k for k in singles[1:] if made[k].settled and made[k].total < open_to]
+        for k in sorted(rivals, key=lambda k: made[k].total)[:_LOOKED_AROUND]:
             made[k] = shaken(fitter, made[k], seed, tell)
     # A pair that adds less than a second effect must neither leads nor lends its noise: that would favour its own parts
     # before others that do the same.
