@@ -104,13 +104,16 @@ def test_where_the_nominal_model_is_right_too_what_leads_is_held_against_its_own
     assert held[0].total == pytest.approx(beside(fitter, held[0], held[0]).total, rel=1e-9)
 
 
-@pytest.mark.parametrize(("right", "worth", "searched"), [(True, True, 1), (False, False, 2), (False, True, 1)])
+@pytest.mark.parametrize(
+    ("right", "worth", "finer", "searched"),
+    [(True, True, 0.5, 1), (False, False, 0.5, 2), (False, True, 0.5, 1), (False, False, 1.0, 1)],
+)
 def test_where_longer_steps_hide_the_gap_the_right_ones_are_searched(
-    right: bool, worth: bool, searched: int, monkeypatch: pytest.MonkeyPatch
+    right: bool, worth: bool, finer: float, searched: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     fitter = coarse_lab(SizeError(length_factor=1.1))
     comparison = fitter.comparison
-    comparison.simulator.step_s = [0.5 * LONGEST_STEP_S] * 3
+    comparison.simulator.step_s = [finer * LONGEST_STEP_S] * 3
     comparison._start()
     search = Search(fitter, [CATALOGUE[name] for name in MANY_KINDS[:2]], quiet, 0)
     steps: list[float] = []
@@ -129,6 +132,6 @@ def test_where_longer_steps_hide_the_gap_the_right_ones_are_searched(
     monkeypatch.setattr("tumblers.diagnosis.what.search.is_right", lambda *_: right and longer())
     assert search.contenders()[0].names == ("size_error",)
     assert len(steps) == searched
-    # Where they do not, all of it is done in the longer ones, which are the quicker.
+    # Where they do not, all of it is done in the longer ones, which are the quicker; and where none are longer, too.
     assert steps[-1] == (LONGEST_STEP_S if searched == 1 and not right else 0.5 * LONGEST_STEP_S)
-    assert not longer()
+    assert max(comparison.simulator.step_s) <= finer * LONGEST_STEP_S

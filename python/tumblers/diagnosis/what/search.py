@@ -130,16 +130,16 @@ class Search:
 
     def _in_longer_steps(self) -> list[Contender]:
         """Return what a search in longer steps finds, the likeliest first; nothing where they hide the gap."""
+        steps, found = list(self.comparison.simulator.step_s), []
         with self.comparison.in_longer_steps():
+            longer = self.comparison.simulator.step_s != steps
             self.fitter.take_likeliest_noise(())
             nominal = of_nominal(self.fitter)
-            if is_right(self.comparison, nominal.residual):
-                found = []
-            else:
+            if not is_right(self.comparison, nominal.residual):
                 found = self._far_and_wide(nominal)
                 # Steps may have been halved for what leads, with the noise.
                 self.fitter.take_likeliest_noise(())
-                if found and found[0].total > of_nominal(self.fitter).total - self.worth:
+                if longer and found and found[0].total > of_nominal(self.fitter).total - self.worth:
                     found = []
         self.fitter.take_likeliest_noise(())
         return found
