@@ -132,7 +132,7 @@ class Descent:
         ----------
         evaluations
             Trial points at most; where the trials' weights change by it, half as many, but two at least, follow once
-            more. Of one, the point is the start and only the derivatives there are taken.
+            more. Of one, the point is the start.
         """
         point, left = self.start, 0
 

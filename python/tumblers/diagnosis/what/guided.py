@@ -30,6 +30,7 @@ from ..fitting.hypothesis import Hypothesis
 from ..gap.guide import Nudge
 from ..gap.predictive import is_wanting, leaves_a_gap
 from .contender import Contender, likeliest, of_fit
+from .margins import CLEAR
 from .own_noise import by_itself, settled
 
 __all__ = ["found_again"]
@@ -75,15 +76,18 @@ def found_again(
     # A cloud has two dimensions at least; along a line a fit finds its way.
     clouded = [k for k in which if made[k].free >= 2]
     rates = _RATES if seen else _RATES[-1:]
+    most = len(clouded) * sum(clouds for _, clouds, _ in rates)
 
     def on_cloud() -> None:
         nonlocal told
-        tell("clouds of points", told, len(clouded) * sum(clouds for _, clouds, _ in _RATES))
+        tell("clouds of points", told, most)
         told += 1
 
-    def keep(k: int, other: Contender) -> None:
+    def keep(k: int, other: Contender) -> float:
+        """Keep what is likelier, and return by how much it is."""
         own = made[k] if made[k].settled else by_itself(fitter, made[k], evaluations=1)
         made[k] = likeliest([own, *settled(fitter, [other], tell)])
+        return own.total - made[k].total
 
     def best() -> Contender:
         return likeliest(made[k] for k in which)
@@ -99,9 +103,9 @@ def found_again(
         found = _by_clouds(fitter, made[k], rates, seed, on_cloud)
         if found is None:
             continue
-        keep(k, found)
-        # Where the first clouds lead, the other contenders start: what is left to look for is near.
-        rates = _RATES[-1:]
+        # From there the others start: what is left to look for is near.
+        if keep(k, found) > fitter.comparison.objective_of(CLEAR):
+            rates = _RATES[-1:]
         if not is_wanting(fitter.comparison, best().residual):
             break
     for k in which:

@@ -25,7 +25,7 @@ __all__ = ["concluded", "in_steps_of", "resolved"]
 # What is open, or as good by `AS_GOOD`, is fitted as far, so many single effects and pairs at most by the noise of the
 # first, and so many single effects more by their own.
 _EQUALLY_FAR, _PAIRS_EQUALLY_FAR, _OWN_EQUALLY_FAR = 3, 4, 1
-# Rivals of a single effect that are looked around, as it was.
+# Rivals of a single effect that are looked around.
 _LOOKED_AROUND = 2
 
 
@@ -127,14 +127,25 @@ def _equally_far(fitter: Fitter, contenders: Sequence[Contender], seed: int, tel
         tell("from where the best is", n, len(behind))
         made[k] = _from_counterparts(fitter, made[k], made[leading], each)
     if len(best.names) == 1:
-        # Where motion hops all that was fitted from one side may have stopped there.
-        open_to = made[singles[0]].total + comparison.objective_of(OPEN)
-        rivals = [k for k in singles[1:] if made[k].settled and made[k].total < open_to]
-        for k in sorted(rivals, key=lambda k: made[k].total)[:_LOOKED_AROUND]:
-            made[k] = shaken(fitter, made[k], seed, tell)
+        _look_around(fitter, made, singles, seed, tell)
     # A pair that adds less than a second effect must neither leads nor lends its noise: that would favour its own parts
     # before others that do the same.
     return sorted(made, key=lambda contender: parsimonious_total(contender, comparison))
+
+
+def _look_around(fitter: Fitter, made: list[Contender], singles: Sequence[int], seed: int, tell: OnPhase) -> None:
+    """Look around the rivals of the best single effect: where motion hops a fit stops on one side of a hop.
+
+    The best one has been looked around where it came to lead; where a rival leads then it is once more, for none is to
+    lead because it alone was.
+    """
+    first, *rivals = sorted(singles, key=lambda k: made[k].total)
+    open_to = made[first].total + fitter.comparison.objective_of(OPEN)
+    rivals = [k for k in rivals if made[k].settled and made[k].total < open_to][:_LOOKED_AROUND]
+    for k in rivals:
+        made[k] = shaken(fitter, made[k], seed, tell)
+    if any(made[k].total < made[first].total for k in rivals):
+        made[first] = shaken(fitter, made[first], seed, tell)
 
 
 def _near_the_first(fitter: Fitter, contenders: Sequence[Contender]) -> tuple[list[int], list[int]]:

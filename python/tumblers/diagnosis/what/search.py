@@ -3,7 +3,7 @@
 Where an effect is weak, differences are linear in it and a few steps of least squares from a scan suffice. Where it is
 strong, the objective has many minima: thresholds, motions that soon have nothing in common. Then lines through the
 ranges are halved, and many points over the whole range are fitted to the beginnings of the trials first, all of it in
-longer steps than what is found is held in.
+longer steps than what is found is held in, unless those hide it.
 """
 
 from __future__ import annotations
@@ -145,7 +145,7 @@ class Search:
         return found
 
     def _in_short_steps(self, found: Sequence[Contender]) -> list[Contender]:
-        """Hold what was found in longer steps in those of the moment, and fit the best on."""
+        """Hold what was found in those of the moment, if it was in longer ones, and fit the best on."""
         self.comparison.halve_steps_for(found[0].effects)
         self.fitter.take_likeliest_noise(found[0].effects)
         # What came near the best counts against its own noise here too.
