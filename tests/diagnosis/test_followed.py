@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from math import log
 
 import numpy as np
 import pytest
 
+from tumblers import diagnose
+from tumblers.dataset import Outcome
+from tumblers.diagnosis.diagnose import _Conclusion
 from tumblers.diagnosis.fitting.fitter import Fitter
 from tumblers.diagnosis.fitting.hypothesis import Hypothesis
+from tumblers.diagnosis.gap import built_floors
 from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.floor import Floor, Sensitivity
+from tumblers.diagnosis.gap.reading import Reader
 from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.diagnosis.how_far.followed import LEAST_FOLLOWED, _left, followed
 from tumblers.diagnosis.what.own_noise import settled_at
-from tumblers.diagnosis.wording.words import headline
+from tumblers.diagnosis.wording.words import headline, points
 from tumblers.effects.magnetization_strength import MagnetizationStrength
 
 from .example import made
@@ -35,36 +42,67 @@ def test_the_right_effect_is_followed_and_one_that_does_nothing_is_not() -> None
     hypothesis = hypothesis_of(fitter)
     there = (np.array(MagnetizationStrength(factor=0.7).to_fit([0.7])) - hypothesis.neutral) / hypothesis.scale
     right, nothing = settled_at(fitter, hypothesis, there), settled_at(fitter, hypothesis, 0.0 * there)
-    floors, steps = fitter.comparison.floors, list(fitter.comparison.simulator.step_s)
     assert followed(fitter, right) > 0.9
     assert followed(fitter, nothing) == pytest.approx(0.0, abs=1e-12)
-    assert followed(fitter, settled_at(fitter, hypothesis, -there)) < LEAST_FOLLOWED
+    wrong = settled_at(fitter, hypothesis, -there)
+    floors, steps = fitter.comparison.floors, list(fitter.comparison.simulator.step_s)
+    assert followed(fitter, wrong) < LEAST_FOLLOWED
     assert fitter.comparison.simulator.step_s == steps
-    assert len(fitter.comparison.floors) == len(floors)
+    assert fitter.comparison.floors is floors
 
 
-def test_noise_that_is_wide_around_an_effect_is_not_followed() -> None:
+def test_noise_that_is_wide_around_an_effect_is_not_followed(monkeypatch: pytest.MonkeyPatch) -> None:
     fitter = fitter_of(0.7)
-    hypothesis = hypothesis_of(fitter)
-    nothing = settled_at(fitter, hypothesis, np.zeros(1))
-    vague = replace(nothing.residual, trials=tuple(0.01 * values for values in nothing.residual.trials))
-    assert followed(fitter, replace(nothing, residual=vague)) == pytest.approx(0.0, abs=1e-12)
+    nothing = settled_at(fitter, hypothesis_of(fitter), np.array([-1e-3]))
+    build = built_floors.build_floor
+
+    def wide(reader: Reader, moved: Sensitivity, share: float) -> Floor:
+        # A hundred times what the motion is uncertain by.
+        return build(reader, moved, 100.0 * share)
+
+    monkeypatch.setattr(built_floors, "build_floor", wide)
+    assert followed(fitter, nothing) < 0.05
 
 
-def test_what_is_within_the_sensor_s_noise_leaves_nothing_and_a_trial_counts_by_the_logarithm() -> None:
-    dataset = measure(plan(PLANS[:2]))
-    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
-    residual = fitter.comparison.residual(fitter.comparison.nominal_paths)
-    for values, size in zip(residual.trials, (0.5, 3.0), strict=True):
-        values[:] = size
-    assert _left(fitter, residual) == pytest.approx(fitter.comparison.sizes[1] * log(9.0))
+def test_what_is_within_the_sensor_s_noise_leaves_nothing_and_a_trial_counts_by_the_logarithm(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    planned = plan(PLANS[:2])
+    dataset = measure(planned)
+    outcomes = tuple(replace(trial, outcome=Outcome(climbs=True)) for trial in dataset.trials)
+    comparison = Comparison(replace(dataset, trials=outcomes), Simulator(dataset))
+    residual = comparison.residual(comparison.nominal_paths)
+    counts = [floor.tracked for floor in comparison.floors]
+    assert [len(values) for values in residual.trials] == [count + 1 for count in counts]
+    for values, (track, outcome) in zip(residual.trials, ((0.5, 0.9), (3.0, 2.0)), strict=True):
+        values[:-1], values[-1] = track, outcome
+    monkeypatch.setattr(comparison, "residual", lambda _: residual)
+    assert _left(comparison, (), comparison.nominal_paths) == pytest.approx(
+        counts[1] * log(9.0) + comparison.alike * log(4.0)
+    )
 
 
 def test_the_headline_says_that_what_would_close_the_gap_follows_nothing() -> None:
-    gap = replace(made().gap, followed=0.01)
     ranking = (replace(made().ranking[0], gap=1.0), *made().ranking[1:])
-    said = headline(made(verdict="unexplained", gap=gap, ranking=ranking))
-    assert "the robot could do almost anything then" in said
-    partial = (replace(ranking[0], gap=7.0), *ranking[1:])
-    assert "follows the measured one no better" in headline(made(verdict="unexplained", gap=gap, ranking=partial))
-    assert "no better" not in headline(made(verdict="unexplained", gap=replace(gap, followed=0.9), ranking=ranking))
+    for share, nearer in ((0.05, "comes only 5 % nearer to"), (-0.2, "comes no nearer to"), (0.9, "too few trials")):
+        diagnosis = made(verdict="unexplained", gap=replace(made().gap, followed=share), ranking=ranking)
+        assert nearer in headline(diagnosis)
+        (far,) = (text for label, text in points(diagnosis) if label == "how far")
+        assert ("by the sensor's noise alone" in far) == (share < LEAST_FOLLOWED)
+
+
+@pytest.mark.parametrize(("share", "verdict"), [(LEAST_FOLLOWED - 0.01, "unexplained"), (LEAST_FOLLOWED, "explained")])
+def test_what_is_not_followed_is_not_explained(share: float, verdict: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    dataset = measure(plan(PLANS[:3]), (MagnetizationStrength(factor=0.7),))
+    monkeypatch.setitem(_Conclusion.stands.__globals__, "followed", lambda _fitter, _contender: share)
+    found = diagnose(dataset, effects=["magnetization_strength"])
+    assert found.verdict == verdict
+    assert [effect.name for effect in found.effects] == ["magnetization_strength"]
+    assert found.gap.followed == share
+    assert json.loads(found.to_json())["gap"]["followed"] == share
+
+
+def test_without_effects_nothing_is_followed() -> None:
+    found = diagnose(measure(plan(PLANS[:3])), effects=["magnetization_strength"])
+    assert found.verdict == "no_gap"
+    assert found.gap.followed is None

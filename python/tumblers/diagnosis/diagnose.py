@@ -142,7 +142,7 @@ class _Conclusion:
         return self.measured[contender.names]
 
     def stands(self, contender: Contender) -> bool:
-        """Return whether a contender stands on trials that its fit had not seen, and by more than its noise."""
+        """Return whether a contender stands on trials that its fit had not seen, and its own run follows the data."""
         gap = shrink(self.fitter, self.held_out(contender), self.seed)
         nominal = self.held_out(self.attribution.nominal)
         foretold = is_foretold(self.fitter, nominal, self.held_out(contender), gap, contender)
@@ -411,8 +411,8 @@ def _assumptions(dataset: Dataset, comparison: Comparison, attribution: Attribut
     if attribution.refused:
         names = ", ".join(" + ".join(effects) for effects in attribution.refused)
         said.append(
-            f"What evidence ranks first as nearly alike, and trials left out refuse, counts {REFUSED:g} of that beside "
-            f"one that they do not: {names}."
+            f"What evidence ranks first as nearly alike, and trials left out refuse, or its own run, which comes no "
+            f"nearer to the data, counts {REFUSED:g} of that beside one of which neither does: {names}."
         )
     tracks = [trial.track for trial in comparison.dataset.trials if trial.track is not None]
     observed = [reader.observed for reader in comparison.readers]

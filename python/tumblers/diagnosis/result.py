@@ -114,9 +114,9 @@ class Gap:
     by_trial
         Trial id to (before, after_nuisance_only, after).
     followed
-        How much nearer the chosen effects bring the model to the data by the sensor's noise alone, a share of the ln of
-        what the nominal model leaves; below 0 if farther, None without effects. Where it is next to nothing, the gap
-        shrinks only because the robot may do anything there with them.
+        How much nearer the chosen effects bring the model to the data where they are fitted, by the sensor's noise
+        alone: a share of the ln of what the nominal model leaves; below 0 if farther, None without effects. Where it is
+        next to nothing, the gap shrinks because the computed motion is uncertain with them.
     """
 
     noise_floor: float

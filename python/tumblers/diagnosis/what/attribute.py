@@ -78,7 +78,7 @@ class Attribution:
     nominal_is_right
         Whether the nominal model passes the predictive test against its own noise.
     refused
-        Names of those that trials left out put behind a tied one.
+        Names of those that trials left out, or their own run, put behind a tied one.
     """
 
     contenders: tuple[Contender, ...]

@@ -34,7 +34,7 @@ def judge(comparison: Comparison, attribution: Attribution, foretold: bool) -> t
     attribution
         Every hypothesis.
     foretold
-        Whether the best hypothesis stood on trials that its fit had not seen.
+        Whether the best hypothesis stood on trials that its fit had not seen, and its own run follows the data.
     """
     nominal, best = attribution.nominal, attribution.contenders[0]
     # What is wide enough around the nominal model hides a gap: where another is likelier, against its noise too.
@@ -63,7 +63,7 @@ def refused(
     contenders
         Those whose trials were left out, by evidence.
     stands
-        Whether one stands on trials that its fit had not seen.
+        Whether one stands on trials that its fit had not seen, and its own run follows the data.
     """
     before: list[tuple[str, ...]] = []
     for contender in contenders:

@@ -152,13 +152,11 @@ def headline(diagnosis: Diagnosis) -> str:
         return f"Unexplained: {left}, and {none}."
     partial = " and ".join(f"{phrase.cause}, {phrase.amount.rstrip(',')}" for phrase in phrases)
     fitted = _fitted(diagnosis)
-    if gap.followed is not None and gap.followed < LEAST_FOLLOWED:
+    if gap.followed is not None and gap.followed < LEAST_FOLLOWED and fitted < gap.noise_floor + _CLOSED:
+        nearer = f"only {percent(gap.followed)} nearer" if gap.followed >= _ONE_PERCENT else "no nearer"
         return (
-            f"Unexplained: {left}. It would be no more than noise if {partial}; but only because the robot could do "
-            "almost anything then: the simulated robot follows the measured one no better."
-            if fitted < gap.noise_floor + _CLOSED
-            else f"Unexplained: {left}, and {none}. The best partial cause is that {partial}; but with it the "
-            "simulated robot follows the measured one no better."
+            f"Unexplained: {left}. It would be within what the computed motion is uncertain by if {partial}; but the "
+            f"simulated robot itself comes {nearer} to the measured one."
         )
     if fitted < gap.noise_floor + _CLOSED:
         return (
@@ -394,10 +392,14 @@ def _how_far(diagnosis: Diagnosis) -> str:
             share += f" (90 % interval {100.0 * shrink.low:.0f} to {percent(shrink.high)})"
     else:
         share = ""
-    return (
+    said = (
         f"{held_out}from {_sigmas(gap.before)} to {_sigmas(gap.after)} ({refitted}; "
         f"noise alone: {_sigmas(gap.noise_floor)}){share}."
     )
+    if gap.followed is not None and gap.followed < LEAST_FOLLOWED:
+        said += " That is by the uncertainty of the computed motion, which the effects make wide: by the sensor's noise"
+        said += f" alone the simulated robot comes {percent(max(gap.followed, 0.0))} nearer to the measured one."
+    return said
 
 
 def _ties(diagnosis: Diagnosis) -> Iterator[str]:
