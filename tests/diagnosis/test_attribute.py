@@ -20,7 +20,7 @@ def test_what_leads_once_another_counts_as_the_nominal_model_imposes_its_steps(m
     slow, fast = SimpleNamespace(effects=("slow",)), SimpleNamespace(effects=("fast",))
     resolved, asked = {slow.effects}, []
 
-    def in_steps_of(_: object, leader: Any, made: list[Any], __: Callable[..., None]) -> list[Any]:
+    def in_steps_of(_: object, leader: Any, made: list[Any], *_rest: object) -> list[Any]:
         asked.append(leader)
         resolved.add(leader.effects)
         return made
@@ -107,7 +107,7 @@ def test_what_is_near_is_compared_by_both_noises_once_it_is_held_as_it_will_be(m
         told.append(("held", which[0].names))
         return list(ranked)
 
-    def in_steps_of(_: object, leader: Contender, contenders: list[Contender], __: object) -> list[Contender]:
+    def in_steps_of(_: object, leader: Contender, contenders: list[Contender], *_rest: object) -> list[Contender]:
         told.append(("in steps of", leader.names))
         coarse[0] = False
         return [replace(c, offset=0.0) for c in contenders]

@@ -88,7 +88,7 @@ def test_a_shorter_step_is_imposed_only_for_what_leads_without_its_credit(compli
         assert set(simulator.step_s) == {LONGEST_STEP_S}
         # What leads by evidence all the same is held in its steps, and the nominal model with it.
         (leader,) = (c for c in contenders if c.names)
-        again = in_steps_of(fitter, leader, contenders, quiet)
+        again = in_steps_of(fitter, leader, contenders, 0, quiet)
         assert {c.step_credit for c in again} == {0.0}
         assert max(simulator.step_s) <= ContactCompliance.longest_step_s * (1.0 + 1e-9)
     assert simulator.resolves(best.effects)
