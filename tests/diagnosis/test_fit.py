@@ -11,12 +11,11 @@ from numpy.testing import assert_allclose
 from tumblers.dataset import Dataset, Outcome
 from tumblers.diagnosis.fitting.descent import Descent
 from tumblers.diagnosis.fitting.fitter import Fitter
-from tumblers.diagnosis.gap.comparison import Comparison, Residual
+from tumblers.diagnosis.gap.comparison import Comparison
 from tumblers.diagnosis.gap.loss import FAR, HUBER, huber, robust_cost
 from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.diagnosis.what.search import Search
 from tumblers.effects.magnetization_strength import MagnetizationStrength
-from tumblers.effects.size_error import SizeError
 from tumblers.effects.stray_field_gradient import StrayFieldGradient
 
 from .lab import PLANS, measure, plan, quiet, rollouts_made
@@ -107,33 +106,3 @@ def test_a_fit_from_the_truth_ends_no_worse_where_some_fields_are_at_rest() -> N
     assert found.cost <= fitter.cost(fitter.residuals(hypothesis, [truth])[0], truth)
     still = found.hypothesis.effects(found.point)[0].edit(fitter.comparison.simulator.nominal(4))
     assert still.surroundings.force_N[2] > 0.0
-
-
-@pytest.mark.parametrize("evaluations", [1, 2, 4])
-def test_no_derivatives_are_taken_from_where_no_step_follows(evaluations: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    dataset = measure(plan(PLANS[:2]), (SizeError(length_factor=1.1),))
-    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
-    (hypothesis,) = Search(fitter, [SizeError], quiet, 0).possible
-    asked: list[tuple[float, ...]] = []
-    tried: set[tuple[float, ...]] = set()
-    jacobian, at = Descent.jacobian, Descent.at
-
-    def noted(self: Descent, point: np.ndarray) -> np.ndarray:
-        asked.append(tuple(point))
-        return jacobian(self, point)
-
-    def seen(self: Descent, point: np.ndarray) -> Residual:
-        tried.add(tuple(point))
-        return at(self, point)
-
-    monkeypatch.setattr(Descent, "jacobian", noted)
-    monkeypatch.setattr(Descent, "at", seen)
-    monkeypatch.setattr("tumblers.diagnosis.fitting.descent._WEIGHINGS", 1)
-    descent = Descent(fitter, hypothesis, np.array([0.2, 0.0]), fitter.trials, 1.0)
-    end = descent.end(evaluations)
-    assert len(tried) == evaluations
-    # From every point but the last.
-    assert len(asked) < evaluations
-    assert tuple(end) not in asked
-    descent.fit(end)
-    assert asked[-1] == tuple(end)

@@ -132,28 +132,17 @@ class Descent:
         ----------
         evaluations
             Trial points at most; where the trials' weights change by it, half as many, but two at least, follow once
-            more. Of one, the point is the start.
+            more. Of one, the point is the start and only the derivatives there are taken.
         """
-        point, left = self.start, 0
-
-        def rows(point: Floats) -> Floats:
-            nonlocal left
-            left -= 1
-            return self.rows(self.at(point), point)
-
-        def slopes(point: Floats) -> Floats:
-            # They are asked for at the last point too, from where no step follows.
-            return self.jacobian(point) if left else np.zeros((len(self.limits), len(point)))
-
+        point = self.start
         for weighing in range(_WEIGHINGS):
-            left = most = evaluations if weighing == 0 else max(evaluations // 2, 2)
             result = least_squares(
-                rows,
+                lambda point: self.rows(self.at(point), point),
                 point,
-                jac=slopes,
+                jac=self.jacobian,
                 bounds=self.bounds,
                 loss=self.loss,
-                max_nfev=most,
+                max_nfev=evaluations if weighing == 0 else max(evaluations // 2, 2),
                 ftol=_SMALL_GAIN,
                 xtol=_SMALL_STEP,
                 gtol=_SMALL_SLOPE,
@@ -169,8 +158,6 @@ class Descent:
     def fit(self, point: Floats) -> Fit:
         """Return the fit that ends at a point, with the derivatives there."""
         fitted, robust = self._fitted(point)
-        # Once more where the first say that their steps are far off.
-        self.jacobian(point)
         slopes = self.jacobian(point)[: len(fitted)] * robust[:, None]
         steps = self._moved[point.tobytes()].steps
         return Fit(self.hypothesis, point, self.at(point), self.cost(point), slopes, steps)
