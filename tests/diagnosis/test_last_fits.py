@@ -11,13 +11,7 @@ from tumblers.diagnosis.fitting.fitter import Fitter
 from tumblers.diagnosis.gap.comparison import Comparison
 from tumblers.diagnosis.gap.simulator import LONGEST_STEP_S, Simulator
 from tumblers.diagnosis.what.contender import Contender, of_fit, of_nominal
-from tumblers.diagnosis.what.last_fits import (
-    _equally_far,
-    _from_counterparts,
-    _look_around,
-    _near_the_first,
-    concluded,
-)
+from tumblers.diagnosis.what.last_fits import _equally_far, _from_counterparts, _near_the_first, concluded
 from tumblers.diagnosis.what.margins import CLEAR, OPEN, SECOND
 from tumblers.diagnosis.what.own_noise import against_the_best, beside, lead_around, settled_at
 from tumblers.diagnosis.what.search import Search
@@ -244,47 +238,34 @@ def test_the_noise_of_the_first_does_not_hide_what_is_near_by_its_own(monkeypatc
     assert len(_near_the_first(fitter, flattered)[1]) == 2
 
 
-@pytest.mark.parametrize("leads", [True, False])
-def test_rivals_that_are_open_beside_one_effect_are_looked_around(leads: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    dataset = measure(plan(PLANS[:3]), seed=3)
-    fitter = Fitter(Comparison(dataset, Simulator(dataset)))
-    (hypothesis,) = Search(fitter, [SizeError], quiet, 0).possible
-    first = settled_at(fitter, hypothesis, np.zeros(2))
-    open_to = fitter.comparison.objective_of(OPEN)
-    behind = (0.0, 0.5, 0.2, 0.1, 0.3, 1.1)
-    made = [
-        replace(first, names=(f"c{k}",), cost=first.cost + share * open_to, settled=k != 3)
-        for k, share in enumerate(behind)
-    ]
-    asked: list[str] = []
-
-    def noted(_fitter: Fitter, contender: Contender, seed: int, _tell: object) -> Contender:
-        assert seed == 7
-        asked.extend(contender.names)
-        return replace(contender, cost=first.cost - 1.0) if leads and contender.names == ("c4",) else contender
-
-    monkeypatch.setattr("tumblers.diagnosis.what.last_fits.shaken", noted)
-    _look_around(fitter, made, [1, 5, 4, 3, 2, 0], 7, quiet)
-    # The likeliest two that were held against their own noise; the first once more where one of them leads then.
-    assert asked == (["c2", "c4", "c0"] if leads else ["c2", "c4"])
-    assert (made[4].total < made[0].total) == leads
-
-
-def test_where_a_pair_leads_no_rival_of_its_single_effect_is_looked_around(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_of_one_effect_what_is_open_beside_it_is_looked_around_and_of_a_pair_nothing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     dataset = measure(plan(PLANS[:3]), seed=3)
     fitter = Fitter(Comparison(dataset, Simulator(dataset)))
     size, tilt = Search(fitter, [SizeError, SubstrateTilt], quiet, 0).possible
     singles = [settled_at(fitter, h, np.zeros(len(h.low))) for h in (size, tilt)]
     pair = settled_at(fitter, size + tilt, np.zeros(len(size.low) + len(tilt.low)))
     ahead = 2.0 * fitter.comparison.objective_of(SECOND)
-    asked: list[tuple[str, ...]] = []
+    asked: list[set[tuple[str, ...]]] = []
 
-    def noted(_fitter: Fitter, _made: object, _singles: object, *_rest: object) -> None:
-        asked.append(())
+    def noted(_fitter: Fitter, those: list[Contender], seed: int, _tell: object, margin: float) -> list[Contender]:
+        assert (seed, margin) == (7, OPEN)
+        assert [c.total for c in those] == sorted(c.total for c in those)
+        asked.append({contender.names for contender in those})
+        # The last one gains by it.
+        return [replace(those[-1], cost=those[-1].cost - ahead), *those[:-1]]
 
-    monkeypatch.setattr("tumblers.diagnosis.what.last_fits._look_around", noted)
+    monkeypatch.setattr("tumblers.diagnosis.what.last_fits.all_shaken", noted)
     monkeypatch.setattr("tumblers.diagnosis.what.last_fits.as_far", lambda _fitter, contender, _alike: contender)
-    for gain, count in ((ahead, 0), (0.0, 1)):
+    monkeypatch.setattr(
+        "tumblers.diagnosis.what.last_fits._from_counterparts", lambda _fitter, other, _best, _each: other
+    )
+    for gain, looked in ((2.0 * ahead, []), (0.0, [{("size_error",), ("substrate_tilt",)}])):
         asked.clear()
-        _equally_far(fitter, [*singles, replace(pair, cost=pair.cost - gain)], 0, quiet)
-        assert len(asked) == count
+        made = _equally_far(fitter, [*singles, replace(pair, cost=pair.cost - gain)], 7, quiet)
+        assert asked == looked
+        assert sorted(len(contender.names) for contender in made) == [1, 1, 2]
+    best, other = (next(c for c in made if c.names == names) for names in (made[0].names, made[1].names))
+    assert len(best.names) == 1
+    assert best.total < other.total - 0.5 * ahead

@@ -12,7 +12,7 @@ from tumblers.diagnosis.fitting.fitter import Fitter
 from tumblers.diagnosis.fitting.hypothesis import Hypothesis
 from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.diagnosis.what import nearby
-from tumblers.diagnosis.what.contender import of_fit
+from tumblers.diagnosis.what.contender import Contender, of_fit
 from tumblers.diagnosis.what.nearby import _moved_alone, _points_around, shaken
 from tumblers.effects.base import Effect
 from tumblers.effects.magnetization_strength import MagnetizationStrength
@@ -108,3 +108,23 @@ def test_of_two_parameters_points_over_the_whole_range_are_tried_too(monkeypatch
         assert all(set(column) == {0.0, 1.0, 2.0, 3.0} for column in quarters.T)
         # The looks that follow are around what was found.
         assert all(len(points) <= nearby._POINTS for points in tried[1:])
+
+
+@pytest.mark.parametrize(("margin", "looked"), [(1.25, ["a", "b"]), (12.0, ["a", "b", "d"])])
+def test_the_margin_says_what_is_about_as_good(
+    margin: float, looked: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fitter = coarse_lab(SizeError(length_factor=1.05))
+    ln = fitter.comparison.objective_of(1.0)
+    # One that was not held against its own noise, and one too many.
+    behind = {"a": 0.0, "b": 1.0, "c": 2.0, "d": 11.0, "e": 11.5, "f": 12.5}
+    those = [Contender((name,), None, NOTHING, ln * by, settled=name != "c") for name, by in behind.items()]
+    asked: list[str] = []
+
+    def noted(_fitter: Fitter, contender: Contender, _seed: int, _tell: object) -> Contender:
+        asked.extend(contender.names)
+        return contender
+
+    monkeypatch.setattr(nearby, "shaken", noted)
+    assert nearby.all_shaken(fitter, those, 0, quiet, margin) == those
+    assert asked == looked

@@ -12,10 +12,10 @@ from collections.abc import Sequence
 from ...progress import OnPhase
 from ..fitting.fitter import Fitter
 from ..fitting.hypothesis import Hypothesis
-from .contender import Contender, likeliest, of_nominal, parsimonious_total
+from .contender import Contender, likeliest, likeliest_first, of_nominal, parsimonious_total
 from .counterpart import as_good
 from .margins import AS_GOOD, CLEAR, OPEN
-from .nearby import shaken
+from .nearby import all_shaken
 from .own_noise import MOST_OWN, OWN, again, against_the_best, by_itself, each_by_itself, settled, settled_at
 from .pairs import nested
 from .sparse import as_far
@@ -25,8 +25,6 @@ __all__ = ["concluded", "in_steps_of", "resolved"]
 # What is open, or as good by `AS_GOOD`, is fitted as far, so many single effects and pairs at most by the noise of the
 # first, and so many single effects more by their own.
 _EQUALLY_FAR, _PAIRS_EQUALLY_FAR, _OWN_EQUALLY_FAR = 3, 4, 1
-# Rivals of a single effect that are looked around.
-_LOOKED_AROUND = 2
 
 
 def in_steps_of(
@@ -126,26 +124,13 @@ def _equally_far(fitter: Fitter, contenders: Sequence[Contender], seed: int, tel
     for n, (k, leading) in enumerate(behind):
         tell("from where the best is", n, len(behind))
         made[k] = _from_counterparts(fitter, made[k], made[leading], each)
-    if len(best.names) == 1:
-        _look_around(fitter, made, singles, seed, tell)
+    if len(best.names) == 1 and len(singles) > 1:
+        # Where motion hops a fit stops on one side of a hop.
+        around = all_shaken(fitter, likeliest_first(made[k] for k in singles), seed, tell, OPEN)
+        made = [*around, *(contender for k, contender in enumerate(made) if k not in singles)]
     # A pair that adds less than a second effect must neither leads nor lends its noise: that would favour its own parts
     # before others that do the same.
     return sorted(made, key=lambda contender: parsimonious_total(contender, comparison))
-
-
-def _look_around(fitter: Fitter, made: list[Contender], singles: Sequence[int], seed: int, tell: OnPhase) -> None:
-    """Look around the rivals of the best single effect: where motion hops a fit stops on one side of a hop.
-
-    The best one has been looked around where it came to lead; where a rival leads then it is once more, for none is to
-    lead because it alone was.
-    """
-    first, *rivals = sorted(singles, key=lambda k: made[k].total)
-    open_to = made[first].total + fitter.comparison.objective_of(OPEN)
-    rivals = [k for k in rivals if made[k].settled and made[k].total < open_to][:_LOOKED_AROUND]
-    for k in rivals:
-        made[k] = shaken(fitter, made[k], seed, tell)
-    if any(made[k].total < made[first].total for k in rivals):
-        made[first] = shaken(fitter, made[first], seed, tell)
 
 
 def _near_the_first(fitter: Fitter, contenders: Sequence[Contender]) -> tuple[list[int], list[int]]:

@@ -28,14 +28,16 @@ Floats = NDArray[np.float64]
 # which each parameter alone is moved either way. With such moves a pair was found in a dataset with a known truth in
 # which the points in all directions had led nowhere.
 _POINTS, _SPREADS, _SHARES, _ALONE = 18, (1.0, 2.0, 4.0), (0.02, 0.05, 0.1), (0.05, 0.15)
-# Of so few parameters a valley may be met by so many points over the range.
-_FEW, _WITHIN = (2,), 32
+# Of this many parameters a valley may be met by so many points over the range.
+_FEW, _WITHIN = 2, 32
 # Fits that are looked around, how many of the points around one are fitted on in so many trial points, beside one with
 # a parameter moved alone, and how often.
 _SHAKEN, _FITS, _FIT_POINTS, _SHAKES = 3, 2, 3, 2
 
 
-def all_shaken(fitter: Fitter, contenders: Sequence[Contender], seed: int, tell: OnPhase) -> list[Contender]:
+def all_shaken(
+    fitter: Fitter, contenders: Sequence[Contender], seed: int, tell: OnPhase, margin: float = CLEAR
+) -> list[Contender]:
     """Look around the best, and around those that are about as good: none is to lead because it alone was.
 
     Parameters
@@ -48,8 +50,10 @@ def all_shaken(fitter: Fitter, contenders: Sequence[Contender], seed: int, tell:
         Of the points.
     tell
         Is told the phase, how much of it is done, and of how much.
+    margin
+        What is less likely than the best by less than so much, in ln, is about as good.
     """
-    near = contenders[0].total + fitter.comparison.objective_of(CLEAR)
+    near = contenders[0].total + fitter.comparison.objective_of(margin)
     chosen = [k for k, contender in enumerate(contenders) if contender.settled and contender.total < near]
     made = list(contenders)
     for k in chosen[:_SHAKEN]:
@@ -79,7 +83,7 @@ def shaken(fitter: Fitter, contender: Contender, seed: int, tell: OnPhase) -> Co
         hypothesis = best.fit.hypothesis
         fitter.take_likeliest_noise(best.effects)
         around = _points_around(best.fit, fitter.comparison.alike, rng)
-        if k == 0 and hypothesis.free in _FEW:
+        if k == 0 and hypothesis.free == _FEW:
             around += _points_within(hypothesis, rng)
         starts = [point for _, point in least(fitter, hypothesis, around, _FITS)]
         if alone := _moved_alone(best.fit):
