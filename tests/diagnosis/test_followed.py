@@ -89,6 +89,11 @@ def test_the_headline_says_that_what_would_close_the_gap_follows_nothing() -> No
         assert nearer in headline(diagnosis)
         (far,) = (text for label, text in points(diagnosis) if label == "how far")
         assert ("by the sensor's noise alone" in far) == (share < LEAST_FOLLOWED)
+    # Where the gap stays there is nothing to take back.
+    stays = (replace(ranking[0], gap=7.0), *ranking[1:])
+    diagnosis = made(verdict="unexplained", gap=replace(made().gap, followed=0.05), ranking=stays)
+    assert "nearer" not in headline(diagnosis)
+    assert not any("nearer" in text for _, text in points(diagnosis))
 
 
 @pytest.mark.parametrize(("share", "verdict"), [(LEAST_FOLLOWED - 0.01, "unexplained"), (LEAST_FOLLOWED, "explained")])

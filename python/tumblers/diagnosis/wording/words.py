@@ -152,8 +152,7 @@ def headline(diagnosis: Diagnosis) -> str:
         return f"Unexplained: {left}, and {none}."
     partial = " and ".join(f"{phrase.cause}, {phrase.amount.rstrip(',')}" for phrase in phrases)
     fitted = _fitted(diagnosis)
-    if gap.followed is not None and gap.followed < LEAST_FOLLOWED and fitted < gap.noise_floor + _CLOSED:
-        nearer = f"only {percent(gap.followed)} nearer" if gap.followed >= _ONE_PERCENT else "no nearer"
+    if nearer := _only_uncertain(diagnosis):
         return (
             f"Unexplained: {left}. It would be within what the computed motion is uncertain by if {partial}; but the "
             f"simulated robot itself comes {nearer} to the measured one."
@@ -270,6 +269,14 @@ def _own(gap: Gap) -> float:
     """Return what the effects shrink of the gap that the refitted sensor leaves, 1 where it leaves none."""
     left = gap.after_nuisance_only - gap.noise_floor
     return 1.0 - max(gap.after - gap.noise_floor, 0.0) / left if left > 0.0 else 1.0
+
+
+def _only_uncertain(diagnosis: Diagnosis) -> str:
+    """Return how much nearer the simulated robot comes where effects close the gap without that, else nothing."""
+    gap = diagnosis.gap
+    if gap.followed is None or gap.followed >= LEAST_FOLLOWED or _fitted(diagnosis) >= gap.noise_floor + _CLOSED:
+        return ""
+    return f"only {percent(gap.followed)} nearer" if gap.followed >= _ONE_PERCENT else "no nearer"
 
 
 def _fitted(diagnosis: Diagnosis) -> float:
@@ -396,9 +403,9 @@ def _how_far(diagnosis: Diagnosis) -> str:
         f"{held_out}from {_sigmas(gap.before)} to {_sigmas(gap.after)} ({refitted}; "
         f"noise alone: {_sigmas(gap.noise_floor)}){share}."
     )
-    if gap.followed is not None and gap.followed < LEAST_FOLLOWED:
-        said += " That is by the uncertainty of the computed motion, which the effects make wide: by the sensor's noise"
-        said += f" alone the simulated robot comes {percent(max(gap.followed, 0.0))} nearer to the measured one."
+    if nearer := _only_uncertain(diagnosis):
+        said += " With the effects the computed motion is uncertain by as much: by the sensor's noise alone the"
+        said += f" simulated robot comes {nearer} to the measured one."
     return said
 
 
