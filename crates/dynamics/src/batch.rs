@@ -1,6 +1,8 @@
 //! A batch of trials over threads.
 //!
-//! Trials share nothing that is written, so that the bits of a result do not depend on the number of threads.
+//! Trials share nothing that is written, so that the bits of a result do not depend on the number of threads. Each
+//! thread takes the longest trial that is left (Graham 1969, SIAM J. Appl. Math. 17, 416): small batches are many in a
+//! diagnosis, and a long trial that begins last leaves the other threads idle.
 
 use crate::error::Diverged;
 use crate::metrics::Gauge;
@@ -8,7 +10,8 @@ use crate::recording::Ended;
 use crate::rollout::Rollout;
 use crate::{Metrics, SolverKind, Stepper, Trial};
 use rayon::ThreadPoolBuilder;
-use rayon::prelude::*;
+use std::cmp::Reverse;
+use std::iter;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -105,8 +108,8 @@ fn each<T: Send>(
     control: &Control,
     run_one: impl Fn(&Trial, usize) -> Result<T, Outcome<T>> + Sync,
 ) -> Result<Vec<Outcome<T>>, rayon::ThreadPoolBuildError> {
-    let guarded = |(i, trial): (usize, &Trial)| {
-        let outcome = catch_unwind(AssertUnwindSafe(|| run_one(trial, i)));
+    let guarded = |i: usize| {
+        let outcome = catch_unwind(AssertUnwindSafe(|| run_one(&trials[i], i)));
         control.finished.fetch_add(1, Ordering::Relaxed);
         match outcome {
             Ok(Ok(done)) => Outcome::Done(done),
@@ -114,11 +117,20 @@ fn each<T: Send>(
             Err(panic) => Outcome::Failed(message(&*panic)),
         }
     };
-    if threads == 1 {
-        return Ok(trials.iter().enumerate().map(|(i, trial)| guarded((i, trial))).collect());
-    }
-    let pool = ThreadPoolBuilder::new().num_threads(threads).build()?;
-    Ok(pool.install(|| trials.par_iter().enumerate().with_max_len(1).map(guarded).collect()))
+    let mut longest_first: Vec<usize> = (0..trials.len()).collect();
+    longest_first.sort_by_key(|&i| Reverse(trials[i].steps()));
+    let taken = AtomicUsize::new(0);
+    let take_all = || -> Vec<(usize, Outcome<T>)> {
+        let next = || longest_first.get(taken.fetch_add(1, Ordering::Relaxed));
+        iter::from_fn(next).map(|&i| (i, guarded(i))).collect()
+    };
+    let mut done = if threads == 1 {
+        take_all()
+    } else {
+        ThreadPoolBuilder::new().num_threads(threads).build()?.broadcast(|_| take_all()).into_iter().flatten().collect()
+    };
+    done.sort_unstable_by_key(|&(i, _)| i);
+    Ok(done.into_iter().map(|(_, outcome)| outcome).collect())
 }
 
 /// Runs `trial` to its end or to that of `watch`, which sees every step.
