@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from math import cos, radians, sin
 from typing import Any, Literal, get_args
 
@@ -55,7 +56,7 @@ class Camera:
     @property
     def perfect(self) -> Camera:
         """The camera that is not off, of the same point."""
-        return Camera(tracked_point=self.tracked_point)
+        return _perfect(self.tracked_point)
 
     def tracked_m(self, center_of_mass_m: ArrayLike) -> NDArray[np.float64]:
         """Return where on the body the tracked point is, from the centre of mass, body frame, m, shape (3,).
@@ -122,3 +123,9 @@ class Camera:
         c, s = cos(0.5 * radians(self.heading_deg)), sin(0.5 * radians(self.heading_deg))
         turned: Any = (c * w - s * z, c * x - s * y, c * y + s * x, c * z + s * w)
         return np.stack(turned, axis=-1)
+
+
+# A diagnosis asks for it several times a run.
+@cache
+def _perfect(tracked_point: TrackedPoint) -> Camera:
+    return Camera(tracked_point=tracked_point)

@@ -172,15 +172,15 @@ class Reader:
         slides = {"slides": reached(self._slid_share(path), True, SLID)} if self.observed.slid_m > 0.0 else {}
         if outcome is None:
             return slides, by_scale
-        said = self.read_outcomes(path)
+        way = self._way_m(path)
         if outcome.mean_speed_m_per_s is not None and outcome.sigma_m_per_s is not None:
-            speed = said["mean_speed_m_per_s"]
+            speed = way / self.duration_s
             terms["mean_speed"] = (outcome.mean_speed_m_per_s - speed) / outcome.sigma_m_per_s
             by_scale["mean_speed"] = -speed / outcome.sigma_m_per_s
         if outcome.tilt_deg is not None and outcome.sigma_deg is not None:
-            terms["tilt"] = (outcome.tilt_deg - said["tilt_deg"]) / outcome.sigma_deg
+            terms["tilt"] = (outcome.tilt_deg - self._tilt_at_rest_deg(path)) / outcome.sigma_deg
         if outcome.climbs is not None:
-            terms["climbs"] = reached(said["climbed_share"], outcome.climbs)
+            terms["climbs"] = reached(way / self.level_way_m, outcome.climbs)
         return terms | slides, by_scale
 
     def _slid_share(self, path: Path) -> float:
@@ -190,14 +190,22 @@ class Reader:
 
     def read_outcomes(self, path: Path) -> dict[str, float]:
         """Return what the model says of each kind of outcome: the share climbed, m/s, degrees."""
-        ends, _ = path.at(np.array([0.0, self.duration_s]))
-        way = float(ends[1, 1] - ends[0, 1])
-        rest = np.linspace((1.0 - REST_SHARE) * self.duration_s, self.duration_s, _REST_MOMENTS)
+        way = self._way_m(path)
         return {
             "climbed_share": way / self.level_way_m,
             "mean_speed_m_per_s": way / self.duration_s,
-            "tilt_deg": float(np.degrees(np.mean(tilt_of(body_axis(path.at(rest)[1]))))),
+            "tilt_deg": self._tilt_at_rest_deg(path),
         }
+
+    def _way_m(self, path: Path) -> float:
+        """Return how far the model comes along +y."""
+        ends, _ = path.at(np.array([0.0, self.duration_s]))
+        return float(ends[1, 1] - ends[0, 1])
+
+    def _tilt_at_rest_deg(self, path: Path) -> float:
+        """Return the mean tilt of the model over the last share of the trial."""
+        rest = np.linspace((1.0 - REST_SHARE) * self.duration_s, self.duration_s, _REST_MOMENTS)
+        return float(np.degrees(np.mean(tilt_of(body_axis(path.at(rest)[1])))))
 
     def linearised(self, path: Path, local: Floats, camera: Floats) -> dict[str, Floats]:
         """Return the differences' derivatives by the nuisances and the differences, by channel, shape (n, 7).

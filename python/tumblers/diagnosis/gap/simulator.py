@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections import OrderedDict
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 from math import ceil, inf
 from typing import NamedTuple
 
@@ -62,12 +63,21 @@ class _Other(NamedTuple):
     edges_s: tuple[float, ...]
 
 
-class _Run(NamedTuple):
+@dataclass(frozen=True)
+class _Run:
     """What moves: a scenario under a perfect camera, on its own or drawn to a track, and what takes over from it."""
 
     scenario: Scenario
     drawn: _Drawn | None
     other: _Other | None
+
+    def __hash__(self) -> int:
+        return self._hash
+
+    # It is looked up several times, and has a scenario's many numbers.
+    @cached_property
+    def _hash(self) -> int:
+        return hash((self.scenario, self.drawn, self.other))
 
 
 class Simulator:
@@ -337,10 +347,6 @@ class Simulator:
             return None
         position = rollout["position_m"][:rows]
         orientation = rollout["orientation"][:rows]
-        # One sign along the path, so that neighbours can be averaged.
-        same = np.einsum("ij,ij->i", orientation[1:], orientation[:-1]) >= 0.0
-        sign = np.concatenate([[1.0], np.cumprod(np.where(same, 1.0, -1.0))])
-        orientation = orientation * sign[:, None]
         position = scenario.camera.tracked_position(position, orientation, scenario.robot.center_of_mass_m)
         return Path(
             interval_s=every * scenario.run.fixed_step_s,
