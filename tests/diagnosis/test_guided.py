@@ -144,9 +144,12 @@ def test_where_the_first_leaves_a_gap_though_it_is_drawn_the_next_is_drawn_too(m
     assert rated == [3, 3]
 
 
-@pytest.mark.parametrize(("first", "clouds"), [(None, 36), (12, 60), (13, 36)])
-def test_a_rate_whose_first_clouds_find_nothing_better_ends(
-    first: int | None, clouds: int, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(
+    ("better", "clouds"),
+    [((12, 12, 12), 30 + 15 + 15), ((12, 13, 12), 30 + 12 + 15), ((1, 13, 13), 30 + 12 + 12), ((13, 1, 1), 12)],
+)
+def test_a_rate_whose_first_clouds_find_nothing_better_ends_and_all_do_with_the_first(
+    better: tuple[int, int, int], clouds: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     fitter, hypothesis = lab()
     off = replace(TRUTH, wavelength_m=1.1 * TRUTH.wavelength_m)
@@ -155,7 +158,8 @@ def test_a_rate_whose_first_clouds_find_nothing_better_ends(
 
     def move(cloud: _Cloud) -> bool:
         moved.append(cloud)
-        return moved.count(cloud) == first
+        rate = len(dict.fromkeys(map(id, moved))) - 1
+        return moved.count(cloud) == better[rate]
 
     monkeypatch.setattr(_Cloud, "move", move)
     monkeypatch.setattr(_Cloud, "is_wanting", lambda _: False)

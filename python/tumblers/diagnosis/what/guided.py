@@ -8,11 +8,12 @@ y ← y + (1 - e^(-γ (t_k - t_(k-1)))) (ŷ_k - y)      at each frame
 ```
 
 loses none where it is seen (Abarbanel and others 2009, SIAM J. Appl. Dyn. Syst. 8, 1341); as γ falls, the objective
-comes back to the one that is asked for. ŷ is what the sensor saw as it was fitted to the run on its own (`Guide`). What
-leaves a gap even where its runs are drawn as fast as at first is no relief, and is left; and where the best leaves no
-gap any more, the others start from what it has. Motion that hops leaves the objective rough, so that least squares
-stop at every hop: it is searched by clouds of points whose covariance adapts (CMA-ES; Hansen and Ostermeier 2001,
-Evol. Comput. 9, 159), in the longer steps as long as runs are drawn.
+comes back to the one that is asked for. ŷ is what the sensor saw as it was fitted to the run on its own (`Guide`).
+What leaves a gap even where its runs are drawn as fast as at first is no relief, and is left, as is what nothing
+better is found beside then; and where the best leaves no gap any more, the others start from what it has. Motion that
+hops leaves the objective rough, so that least squares stop at every hop: it is searched by clouds of points whose
+covariance adapts (CMA-ES; Hansen and Ostermeier 2001, Evol. Comput. 9, 159), in the longer steps as long as runs are
+drawn.
 """
 
 from __future__ import annotations
@@ -131,7 +132,7 @@ def _by_clouds(
     seed: int,
     on_cloud: Callable[[], None],
 ) -> Contender | None:
-    """Return a contender where the clouds around it lead, None where its runs leave a gap even as they are drawn.
+    """Return a contender where the clouds around it lead, None where the first ones do nowhere, or leave a gap.
 
     It is against the noise around where the last cloud ended.
     """
@@ -148,7 +149,7 @@ def _by_clouds(
                 found |= cloud.move()
                 if n + 1 == _IDLE and not found:
                     break
-            if rate == rates[0][0] and cloud.is_wanting():
+            if rate == rates[0][0] and (not found or cloud.is_wanting()):
                 return None
         point = cloud.best
     return _fitted(fitter, contender, point)
