@@ -14,6 +14,7 @@ from tumblers.diagnosis.gap.comparison import Comparison
 from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.diagnosis.what.beginnings import MANY
 from tumblers.diagnosis.what.contender import Contender, of_fit, of_nominal
+from tumblers.diagnosis.what.margins import SECOND
 from tumblers.diagnosis.what.pair_search import PairSearch, kept
 from tumblers.diagnosis.what.pairs import Pairs
 from tumblers.diagnosis.what.search import Search
@@ -165,6 +166,25 @@ def test_a_pair_that_only_the_exchange_brings_is_searched_over_its_range_too(
         assert {pair.names for pair in made} == {pair.names for pair in exchanged}
         assert refined == (known if strong else [])
         assert sought == (expected if strong else [])
+
+
+@pytest.mark.parametrize(("ln", "exchanged"), [(SECOND + 1.0, True), (SECOND - 1.0, False)])
+@pytest.mark.parametrize("wanting", [True, False])
+def test_what_would_not_be_named_is_not_exchanged(
+    ln: float, exchanged: bool, wanting: bool, search: Search, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fitter = search.fitter
+    size, strength, *_ = search.possible
+    single = held(fitter, size, 1e4)
+    pair = held(fitter, size + strength, 1e4 - fitter.comparison.objective_of(ln))
+    seen: list[Contender] = []
+    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.settled", as_they_are)
+    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.is_wanting", lambda *_: wanting)
+    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.is_enough", lambda *_: False)
+    monkeypatch.setattr(Pairs, "add", lambda *_: None)
+    monkeypatch.setattr(PairSearch, "exchanged", lambda _, found, __: seen.extend(found) or list(found))
+    search.pairing.found([single], strong=False, known=[pair])
+    assert seen == ([pair] if exchanged else [])
 
 
 @pytest.mark.parametrize("strong", [True, False])

@@ -2,8 +2,8 @@
 
 A second effect is added to the best ones, and where the cause is strong, the best are joined two and two. Where that
 leaves a gap, more of them are firsts, and what no scan shows is searched far away: effects of many parameters beside
-the best one. At last either effect of the best pair is exchanged, for one may be the answer to another that is wrong,
-and what that brings is searched over its range too.
+the best one. At last either effect of the best pair is exchanged, where that would be named, for one may be the answer
+to another that is wrong, and what that brings is searched over its range too.
 """
 
 from __future__ import annotations
@@ -135,7 +135,7 @@ class PairSearch:
             many = [h for h in self.possible if h.free > MANY and h.names != singles[0].names]
             made = self._settled(self._with_many(made, singles[0], many, searched), made)
             searched |= {frozenset(singles[0].names + h.names) for h in many}
-        if wanting or self.is_named(made[0], singles[0]):
+        if self.is_named(made[0], singles[0]):
             made = self.exchanged(made, singles)
             new = [pair for pair in made[:_REFINED] if frozenset(pair.names) not in searched]
             if strong and new:

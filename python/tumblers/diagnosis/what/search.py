@@ -157,9 +157,8 @@ class Search:
         if len(made[0].names) == 1:
             return made
         singles, pairs = ([c for c in made if len(c.names) == count] for count in (1, 2))
-        wanting = is_wanting(self.comparison, singles[0].residual)
         # Where in longer steps another led, it was the effects of that which were exchanged.
-        if set(pairs[0].names) != set(found[0].names) and (wanting or self.pairing.is_named(pairs[0], singles[0])):
+        if set(pairs[0].names) != set(found[0].names) and self.pairing.is_named(pairs[0], singles[0]):
             exchanged = self.pairing.exchanged(pairs, singles)
             if exchanged[0].names != pairs[0].names:
                 exchanged[0] = shaken(self.fitter, exchanged[0], self.seed, self.tell)
