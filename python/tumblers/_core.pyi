@@ -251,8 +251,9 @@ def rollouts(
     verified: bool = True,
 ) -> list[_Rollout]:
     """Run trials in parallel (0: all threads) and return their poses as seen: of trial i every `every[i]`-th step, to
-    the last that is finite, or with `while_resolved` to the last before a step turns the body by a right angle. Unless
-    `verified`, a step for which the reduced problem has a solution is not held against the unreduced one."""
+    the last that is finite, or with `while_resolved` to the last before a step turns the body by a right angle. The
+    quaternions are of one sign along a run. Unless `verified`, a step for which the reduced problem has a solution is
+    not held against the unreduced one."""
 
 # Where a loss turns from square to linear, and a track's mean square from which it counts by its logarithm; between two
 # looks at a path from which a derivative by the clock is taken; how near to its last row a path's end is read, rows.

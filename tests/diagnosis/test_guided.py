@@ -131,7 +131,10 @@ def test_what_one_has_found_of_a_relief_is_right_for_another_too(monkeypatch: py
     assert made[1].total == pytest.approx(lucky.total, abs=0.05 * (pair.total - lucky.total))
 
 
-def test_where_the_first_leaves_a_gap_though_it_is_drawn_the_next_is_drawn_too(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(("wanting", "drawn"), [(True, [3, 3]), (False, [3])])
+def test_where_the_first_clouds_lead_nowhere_the_next_is_drawn_too_if_a_gap_is_left(
+    wanting: bool, drawn: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
     fitter, relief = lab()
     stuck = settled_at(fitter, relief, point_of(TRUTH, relief), evaluations=1)
     rated: list[int] = []
@@ -140,8 +143,9 @@ def test_where_the_first_leaves_a_gap_though_it_is_drawn_the_next_is_drawn_too(m
         rated.append(len(rates))
 
     monkeypatch.setattr(guided, "_by_clouds", by_clouds)
+    monkeypatch.setattr(guided, "is_wanting", lambda *_: wanting)
     found_again(fitter, [stuck, stuck], [0, 1], 0, quiet)
-    assert rated == [3, 3]
+    assert rated == drawn
 
 
 @pytest.mark.parametrize(
@@ -163,8 +167,9 @@ def test_a_rate_whose_first_clouds_find_nothing_better_ends_and_all_do_with_the_
 
     monkeypatch.setattr(_Cloud, "move", move)
     monkeypatch.setattr(_Cloud, "is_wanting", lambda _: False)
-    found_again(fitter, [stuck], [0], 0, quiet)
+    (found,) = found_again(fitter, [stuck], [0], 0, quiet)
     assert len(moved) == clouds
+    assert better[0] <= 12 or found is stuck
 
 
 def test_a_cloud_at_the_end_of_a_range_stays_within_it() -> None:

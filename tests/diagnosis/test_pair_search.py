@@ -181,9 +181,12 @@ def test_what_would_not_be_named_is_not_exchanged(
     monkeypatch.setattr("tumblers.diagnosis.what.pair_search.settled", as_they_are)
     monkeypatch.setattr("tumblers.diagnosis.what.pair_search.is_wanting", lambda *_: wanting)
     monkeypatch.setattr("tumblers.diagnosis.what.pair_search.is_enough", lambda *_: False)
+    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.refined", as_they_are)
     monkeypatch.setattr(Pairs, "add", lambda *_: None)
+    monkeypatch.setattr(Pairs, "join", lambda *_: None)
+    monkeypatch.setattr(PairSearch, "_with_many", lambda _, found, *__: list(found))
     monkeypatch.setattr(PairSearch, "exchanged", lambda _, found, __: seen.extend(found) or list(found))
-    search.pairing.found([single], strong=False, known=[pair])
+    search.pairing.found([single], strong=True, known=[pair])
     assert seen == ([pair] if exchanged else [])
 
 

@@ -117,11 +117,10 @@ fn each<T: Send>(
             Err(panic) => Outcome::Failed(message(&*panic)),
         }
     };
-    let mut longest_first: Vec<usize> = (0..trials.len()).collect();
-    longest_first.sort_by_key(|&i| Reverse(trials[i].steps()));
+    let order = longest_first(trials.iter().map(Trial::steps));
     let taken = AtomicUsize::new(0);
     let take_all = || -> Vec<(usize, Outcome<T>)> {
-        let next = || longest_first.get(taken.fetch_add(1, Ordering::Relaxed));
+        let next = || order.get(taken.fetch_add(1, Ordering::Relaxed));
         iter::from_fn(next).map(|&i| (i, guarded(i))).collect()
     };
     let mut done = if threads == 1 {
@@ -131,6 +130,13 @@ fn each<T: Send>(
     };
     done.sort_unstable_by_key(|&(i, _)| i);
     Ok(done.into_iter().map(|(_, outcome)| outcome).collect())
+}
+
+/// The places of some lengths, the longest first, equals as they come.
+fn longest_first(lengths: impl Iterator<Item = u64>) -> Vec<usize> {
+    let mut order: Vec<(usize, u64)> = lengths.enumerate().collect();
+    order.sort_by_key(|&(_, length)| Reverse(length));
+    order.into_iter().map(|(i, _)| i).collect()
 }
 
 /// Runs `trial` to its end or to that of `watch`, which sees every step.
@@ -157,4 +163,15 @@ fn run(
 fn message(panic: &(dyn std::any::Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
     text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "the solver panicked".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::longest_first;
+
+    #[test]
+    fn the_longest_is_taken_first() {
+        assert_eq!(longest_first([200, 40, 400, 40].into_iter()), [2, 0, 1, 3]);
+        assert_eq!(longest_first([].into_iter()), [0; 0]);
+    }
 }

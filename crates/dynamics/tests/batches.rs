@@ -1,4 +1,5 @@
-//! Batches: the same bits for any number of threads, the poses that a recording has, and a stop that is heard.
+//! Batches: the same bits for any number of threads, the poses that a recording has but for the sign of the quaternions, and a
+//! stop that is heard.
 
 mod common;
 
@@ -8,6 +9,7 @@ use std::sync::atomic::Ordering;
 use tumblers_dynamics::batch::{Control, Outcome, Until, rollouts, sweep};
 use tumblers_dynamics::recording::record;
 use tumblers_dynamics::rollout::Rollout;
+use tumblers_dynamics::trial::TrialParts;
 use tumblers_dynamics::{Metrics, SolverKind, Stepper, Trial, Vec3};
 
 fn trials() -> Vec<Trial> {
@@ -107,6 +109,36 @@ fn the_poses_do_not_depend_on_the_threads() {
         rollouts.iter().map(|rollout| pose_bits(&rollout.position, &rollout.orientation)).collect()
     };
     assert_eq!(run(1), run(4));
+}
+
+#[test]
+fn the_rows_of_a_rollout_have_one_sign_however_far_the_body_turns_between_them() {
+    let trial = Trial::new(TrialParts { duration: 0.3, ..cuboid_on_paper(0.01, 10.0) }).unwrap();
+    // 0.6 of a turn.
+    let every = 120;
+    let (recording, _) = record(&trial, SolverKind::Reduced, every, |_| ControlFlow::Continue(())).unwrap();
+    let control = Control::default();
+    let rollout =
+        walked(rollouts(&[trial], &[every], Until::End, SolverKind::Unverified, 1, &control).unwrap()).remove(0);
+    let alike = |rows: &[[f64; 4]]| -> Vec<bool> {
+        rows.windows(2).map(|pair| (0..4).map(|i| pair[0][i] * pair[1][i]).sum::<f64>() >= 0.0).collect()
+    };
+    assert!(alike(&recording.orientation).contains(&false));
+    assert!(!alike(&rollout.orientation).contains(&false));
+    for (row, recorded) in rollout.orientation.iter().zip(&recording.orientation) {
+        assert!(row == recorded || row.map(|x| -x) == *recorded);
+    }
+}
+
+#[test]
+fn outcomes_are_in_the_order_of_their_trials_however_long_they_are() {
+    let durations = [0.02, 0.1, 0.05];
+    let trials = durations.map(|duration| Trial::new(TrialParts { duration, ..cuboid_on_paper(0.01, 5.0) }).unwrap());
+    for threads in [1, 3] {
+        let control = Control::default();
+        let found = walked(rollouts(&trials, &[1; 3], Until::End, SolverKind::Unverified, threads, &control).unwrap());
+        assert_eq!(found.iter().map(|rollout| rollout.time.len()).collect::<Vec<_>>(), [41, 201, 101]);
+    }
 }
 
 #[test]

@@ -172,15 +172,14 @@ class Reader:
         slides = {"slides": reached(self._slid_share(path), True, SLID)} if self.observed.slid_m > 0.0 else {}
         if outcome is None:
             return slides, by_scale
-        way = self._way_m(path)
         if outcome.mean_speed_m_per_s is not None and outcome.sigma_m_per_s is not None:
-            speed = way / self.duration_s
+            speed = self._way_m(path) / self.duration_s
             terms["mean_speed"] = (outcome.mean_speed_m_per_s - speed) / outcome.sigma_m_per_s
             by_scale["mean_speed"] = -speed / outcome.sigma_m_per_s
         if outcome.tilt_deg is not None and outcome.sigma_deg is not None:
             terms["tilt"] = (outcome.tilt_deg - self._tilt_at_rest_deg(path)) / outcome.sigma_deg
         if outcome.climbs is not None:
-            terms["climbs"] = reached(way / self.level_way_m, outcome.climbs)
+            terms["climbs"] = reached(self._way_m(path) / self.level_way_m, outcome.climbs)
         return terms | slides, by_scale
 
     def _slid_share(self, path: Path) -> float:

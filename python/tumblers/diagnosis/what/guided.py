@@ -45,8 +45,9 @@ Floats = NDArray[np.float64]
 # three. In a small lab both lead to it.
 _RATES = ((20.0, 30, 1.0), (5.0, 15, 0.6), (0.0, 15, 0.4))
 _CLOUD, _SPREAD = 16, 0.05
-# A rate whose first so many clouds have found nothing better ends. A choice: where a relief was to be found the first
-# that was better was one of nine, and around one that had been found already 60 found nothing in the end.
+# A rate whose first so many clouds have found nothing better ends, and all do with the first, whose clouds reach
+# farthest. A choice: where a relief was to be found the first that was better was one of nine, and around one that had
+# been found already 60 found nothing in the end.
 _IDLE = 12
 # What such a value counts at least, in its range.
 _LEAST_VALUE = 0.02
@@ -102,10 +103,8 @@ def found_again(
     for k in clouded:
         share(k)
         found = _by_clouds(fitter, made[k], rates, seed, on_cloud)
-        if found is None:
-            continue
         # From there the others start: what is left to look for is near.
-        if keep(k, found) > fitter.comparison.objective_of(CLEAR):
+        if found is not None and keep(k, found) > fitter.comparison.objective_of(CLEAR):
             rates = _RATES[-1:]
         if not is_wanting(fitter.comparison, best().residual):
             break
@@ -132,7 +131,7 @@ def _by_clouds(
     seed: int,
     on_cloud: Callable[[], None],
 ) -> Contender | None:
-    """Return a contender where the clouds around it lead, None where the first ones do nowhere, or leave a gap.
+    """Return a contender where the clouds around it lead; None where the first rate's lead nowhere, or leave a gap.
 
     It is against the noise around where the last cloud ended.
     """

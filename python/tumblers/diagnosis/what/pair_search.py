@@ -2,7 +2,7 @@
 
 A second effect is added to the best ones, and where the cause is strong, the best are joined two and two. Where that
 leaves a gap, more of them are firsts, and what no scan shows is searched far away: effects of many parameters beside
-the best one. At last either effect of the best pair is exchanged, where that would be named, for one may be the answer
+the best one. At last, where the best pair would be named, either effect of it is exchanged, for one may be the answer
 to another that is wrong, and what that brings is searched over its range too.
 """
 
@@ -159,7 +159,7 @@ class PairSearch:
         return self._settled(pairs.likeliest_first(), known)
 
     def is_named(self, pair: Contender, single: Contender) -> bool:
-        """Return whether a pair would be named beside one effect; else, where that leaves no gap, it is no answer.
+        """Return whether a pair would be named beside one effect; else it is no answer.
 
         Parameters
         ----------
