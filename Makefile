@@ -37,7 +37,7 @@ rust-test:
 	cargo test --locked
 
 python-test: $(VENV)/installed $(VENV)/developing
-	$(BIN)/pytest -n auto --ignore=tests/test_blind_dozen.py --ignore=tests/test_paper_gap.py
+	$(BIN)/pytest -n auto --durations=20 --ignore=tests/test_blind_dozen.py --ignore=tests/test_paper_gap.py
 
 # Sealed datasets, made and diagnosed, and the paper's own gap: minutes, and beside `make test` for that.
 dozen: $(VENV)/installed $(VENV)/developing
