@@ -14,6 +14,7 @@ import xarray as xr
 
 import tumblers
 from tumblers import Scenario, preset_scenario
+from tumblers.effects import CATALOGUE
 from tumblers.options import magnetization_cases, numbers
 
 COMMAND = [sys.executable, "-m", "tumblers"]
@@ -39,7 +40,7 @@ def test_version() -> None:
     assert (done.returncode, done.stdout) == (0, f"tumblers {tumblers.__version__}\n")
 
 
-@pytest.mark.parametrize("command", [[], ["simulate"], ["sweep"], ["presets"]])
+@pytest.mark.parametrize("command", [[], ["simulate"], ["sweep"], ["presets"], ["effects"]])
 def test_help_has_examples(command: list[str]) -> None:
     done = tumble(*command, "--help")
     assert done.returncode == 0
@@ -95,6 +96,18 @@ def test_presets_are_listed_and_printed(tmp_path: Path) -> None:
     assert section == "[substrate]"
 
 
+def test_effects_are_listed_and_described(tmp_path: Path) -> None:
+    listed = tumble("effects").stdout.splitlines()
+    assert [line.split()[0] for line in listed] == list(CATALOGUE)
+    described = tumble("effects", "stray_field_gradient").stdout
+    assert described.startswith("## `stray_field_gradient`\n")
+    assert "gradient_T_per_m = [0.0, 0.0, 0.0]" in described
+    assert tumble("effects", "--page", tmp_path / "effects.md").stdout == ""
+    page = Path(__file__).parents[1] / "docs" / "effects.md"
+    # Where this fails, the command writes it again.
+    assert (tmp_path / "effects.md").read_text(encoding="utf-8") == page.read_text(encoding="utf-8")
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
@@ -142,6 +155,9 @@ def test_presets_are_listed_and_printed(tmp_path: Path) -> None:
             "no case could be run, the first: robot.dr",
         ),
         (["presets", "cube"], "'cube'"),
+        (["effects", "friction"], "'friction'"),
+        (["effects", "size_error", "--page", "effects.md"], "--page"),
+        (["simulate", "spiked", "--out", "run.nc"], "`tumblers presets spiked > scenario.toml`"),
     ],
 )
 def test_bad_input_gets_one_line_and_writes_nothing(

@@ -50,6 +50,18 @@ def test_trackpy_columns_with_their_index(tmp_path: Path) -> None:
     np.testing.assert_allclose(track.channels["y_m"], [0.0, 2e-5], atol=1e-18)
 
 
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("time_s;x_m;y_m\n0,0;1,5e-6;0,0\n", "t.csv line 1 with semicolons between columns, expected commas"),
+        ("\ntime_s\tx_m\n0.0\t1e-6\n", "t.csv line 2 with tabs between columns, expected commas"),
+    ],
+)
+def test_what_a_spreadsheet_writes_with_other_separators_is_named(tmp_path: Path, text: str, words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        read(tmp_path, text)
+
+
 def test_frames_that_trackpy_writes_twice(tmp_path: Path) -> None:
     track = read(tmp_path, "frame,y,x,frame,particle\n0,100,50,0,3\n5,98,51,5,3\n")
     np.testing.assert_allclose(track.time_s, [0.0, 0.1])

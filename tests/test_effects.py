@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import math
 import re
+import tomllib
 from dataclasses import FrozenInstanceError, fields, replace
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 
 from tumblers import InputError, Scenario, StaticField, preset_scenario, simulate
 from tumblers.effects import CATALOGUE, Effect, effects_from_tables, get
+from tumblers.effects.description import describe
 
 # The contract's table, in its order.
 NAMES = [
@@ -253,3 +255,19 @@ def test_effects_act_in_their_order_and_together() -> None:
     assert effective.substrate.friction_coefficient == 4.0 * ROLLING.substrate.friction_coefficient
     assert effective.run.incline_deg == ROLLING.run.incline_deg + 2.0
     assert effective.effects == ()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_description_has_what_it_is_its_numbers_and_a_table_that_loads(name: str) -> None:
+    effect = CATALOGUE[name]
+    text = describe(effect)
+    assert effect.source.split()[0] in text
+    assert text.count("```text\n") == 1
+    assert "Attributes" not in text
+    for parameter in effect.parameters:
+        assert f"| `{parameter.key}` | {parameter.meaning} |" in text
+    table = re.search(r"```toml\n(.*?)```", text, re.DOTALL)
+    assert table is not None
+    (loaded,) = effects_from_tables(tomllib.loads(table[1])["effect"])
+    assert isinstance(loaded, effect)
+    assert loaded.is_neutral()

@@ -15,6 +15,7 @@ from typer.exceptions import TyperException
 from .blind.commands import blind_app
 from .check import choice, thread_count
 from .diagnose_command import diagnose
+from .effects_command import effects
 from .errors import InputError, SimulationError, TumblersError
 from .field import field_to_table
 from .grid import PAPER_DRAFTS_DEG, PAPER_MAGNETIZATION_DEG
@@ -109,6 +110,8 @@ def simulate(
     pictures = Pictures(snapshots=snapshots, cycle=cycle, animate=animate, view=view)
     pictures.check([scenario, out, *([] if plot is None else [plot])])
     choice("--solver", solver, ("reduced", "general"))
+    if str(scenario) in EXPERIMENTS and not scenario.exists():
+        raise InputError(None, "no such file", f"what `tumblers presets {scenario} > scenario.toml` writes", scenario)
     load_effect_files(effects)
     loaded = Scenario.load(scenario)
     from .simulate import simulate as run_scenario
@@ -273,6 +276,7 @@ for _command, _words in (
     (presets, "List the paper's robots, substrates, drives, experiments."),
     (simulate, "Run one scenario."),
     (sweep, "Run a grid of drafts and magnetization errors."),
+    (effects, "List what a scenario may have and a diagnosis looks for."),
     (diagnose, "Say where model and lab part, why, and what to try next."),
     (view, "Draw a saved run: pictures, an animation, a 3-D page."),
     (climb, "Find the greatest slope that a robot climbs."),

@@ -34,7 +34,14 @@ def read_csv_rows(key: str, path: Path, name: str) -> list[tuple[int, list[str]]
     reader = csv.reader(lines, strict=True, skipinitialspace=True)
     try:
         rows = [(reader.line_num, [cell.strip() for cell in row]) for row in reader]
-        # A spreadsheet leaves rows of empty cells behind.
-        return [(line, cells) for line, cells in rows if any(cells)]
     except csv.Error as error:
         raise InputError(key, f"{name}: {error}", "a CSV file") from None
+    # A spreadsheet leaves rows of empty cells behind.
+    rows = [(line, cells) for line, cells in rows if any(cells)]
+    line, header = rows[0] if rows else (0, [])
+    # As a spreadsheet writes it where numbers have decimal commas.
+    for separator, word in ((";", "semicolons"), ("\t", "tabs")):
+        if len(header) == 1 and separator in header[0]:
+            expected = "commas between columns, and points in numbers"
+            raise InputError(key, f"{name} line {line} with {word} between columns", expected)
+    return rows
