@@ -8,6 +8,9 @@ import numpy as np
 
 from tumblers import dataset
 from tumblers.dataset import CHANNELS, LabTrial, Outcome, Sensor
+from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.predictive import is_right
+from tumblers.diagnosis.gap.simulator import Simulator
 
 TEXT = (Path(__file__).parents[1] / "docs" / "dataset.md").read_text(encoding="utf-8")
 
@@ -29,9 +32,14 @@ def test_the_example_loads(tmp_path: Path) -> None:
     assert pixels is not None
     assert metres.frames == 3
     np.testing.assert_allclose(pixels.time_s, [0.0, 0.02, 0.06])
-    np.testing.assert_allclose(pixels.channels["y_m"], [-0.2 * 6.5e-6, 20.5 * 6.5e-6, 69.0 * 6.5e-6])
+    np.testing.assert_allclose(pixels.channels["y_m"], [-0.2 * 6.5e-6, 35.9 * 6.5e-6, 143.3 * 6.5e-6])
     for trial in data.trials:
         trial.scenario(data, 5e-4).trial()
+    comparison = Comparison(data, Simulator(data))
+    comparison.take_noise_of(())
+    nominal = comparison.residual(comparison.nominal_paths)
+    assert is_right(comparison, nominal)
+    assert all(np.abs(wrong).max() < 3.0 for wrong in nominal.trials)
 
 
 def test_every_key_of_the_format_is_explained() -> None:
