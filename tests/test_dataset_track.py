@@ -154,7 +154,7 @@ REFUSED = [
     ("time_s,x_m,x_m\n0,0,0\n", "two columns 'x_m', expected each column once"),
     ("time_s,x_mm\n0,0\n", "a column 'x_mm', expected time_s and any of x_m,"),
     ("time_s,x_m,mass\n0,0,0\n", "a column 'mass'"),
-    ("time_s;x_m\n0;0\n", "expected one column time_s"),
+    ("time_s;x_m\n0;0\n", "t.csv line 1 with semicolons between columns, expected commas"),
     ("time_s,qw,qx,qy\n0,1,0,0\n", "expected all of qw, qx, qy, qz or none"),
     ("time_s,x_m\n0,0\n0.1,fast\n", "t.csv line 3: x_m 'fast', expected a finite number, or an empty cell"),
     ("time_s,x_m\n\n0,nan\n", "t.csv line 3: x_m 'nan'"),
