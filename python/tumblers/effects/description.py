@@ -24,7 +24,7 @@ changes nothing, to the bit. Tables to paste stand at neutral: change a number. 
 
 
 def headline(effect: type[Effect]) -> str:
-    """Return what an effect is, in the first sentence of its docstring.
+    """Return what an effect is, in the first paragraph of its docstring.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def describe(effect: type[Effect]) -> str:
         Of the catalogue, or a user's own.
     """
     rows = "\n".join(_row(p) for p in effect.parameters)
-    table = write_entry("effect", effect.from_vector([p.neutral for p in effect.parameters]).to_table())
+    table = write_entry("effect", effect().to_table())
     return (
         f"## `{effect.name}`\n\n{_said(effect)}\n\n"
         f"| key | what it is | unit | neutral | plausible |\n| --- | --- | --- | --- | --- |\n{rows}\n\n"
