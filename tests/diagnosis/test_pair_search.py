@@ -57,6 +57,15 @@ def as_they_are(_fitter: Fitter, contenders: Sequence[Contender], *_: object) ->
     return list(contenders)
 
 
+def search_nothing(monkeypatch: pytest.MonkeyPatch, wanting: bool, enough: bool) -> None:
+    """Leave pairs as they are, whatever a search would do with them, in a gap that is left or not."""
+    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.settled", as_they_are)
+    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.refined", as_they_are)
+    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.is_wanting", lambda *_: wanting)
+    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.is_enough", lambda *_: enough)
+    monkeypatch.setattr(Pairs, "add", lambda *_: None)
+
+
 def test_what_was_settled_does_not_give_way_to_what_was_not() -> None:
     fitter = coarse_lab(SizeError(length_factor=1.1))
     fitter.take_likeliest_noise(())
@@ -178,11 +187,7 @@ def test_what_would_not_be_named_is_not_exchanged(
     single = held(fitter, size, 1e4)
     pair = held(fitter, size + strength, 1e4 - fitter.comparison.objective_of(ln))
     seen: list[Contender] = []
-    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.settled", as_they_are)
-    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.is_wanting", lambda *_: wanting)
-    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.is_enough", lambda *_: False)
-    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.refined", as_they_are)
-    monkeypatch.setattr(Pairs, "add", lambda *_: None)
+    search_nothing(monkeypatch, wanting, enough=False)
     monkeypatch.setattr(Pairs, "join", lambda *_: None)
     monkeypatch.setattr(PairSearch, "_with_many", lambda _, found, *__: list(found))
     monkeypatch.setattr(PairSearch, "exchanged", lambda _, found, __: seen.extend(found) or list(found))
@@ -210,11 +215,7 @@ def test_where_a_cause_is_strong_the_best_are_joined_and_where_pairs_leave_a_gap
         searched.append(those)
         return list(found)
 
-    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.settled", as_they_are)
-    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.refined", as_they_are)
-    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.is_wanting", lambda *_: wanting)
-    monkeypatch.setattr("tumblers.diagnosis.what.pair_search.is_enough", lambda *_: enough)
-    monkeypatch.setattr(Pairs, "add", lambda *_: None)
+    search_nothing(monkeypatch, wanting, enough)
     monkeypatch.setattr(Pairs, "join", lambda _, those: joined.append(those))
     monkeypatch.setattr(PairSearch, "exchanged", lambda _, found, __: list(found))
     monkeypatch.setattr(PairSearch, "_with_many", with_many)
