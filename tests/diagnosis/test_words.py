@@ -58,6 +58,25 @@ def test_where_outcomes_alone_leave_no_gap_nothing_is_said_of_noise() -> None:
     assert said == "No gap: the nominal model contradicts no outcome (near the border of one, if at all: 0.7 σ)."
 
 
+def test_of_what_is_tied_and_unlikely_the_headline_does_not_say_that_it_is_so() -> None:
+    (gradient,) = made().effects
+    unsure = replace(gradient, probability=0.19)
+    words = headline(made(effects=(unsure,)))
+    assert words.startswith(
+        "Either of two effects may be the cause; if the robot is pulled along +y, more at high frequency, seen from "
+        "12 Hz up (probability 19 %), a stray field gradient of 0.048 ± 0.004 T/m along y"
+    )
+    assert words.endswith("explains 93 % of the gap on trials not fitted.")
+    more = replace(unsure, confounded_with=("viscous_drag", "substrate_tilt"))
+    assert headline(made(effects=(more,))).startswith("Any of 3 effects may be the cause; if the robot is pulled")
+    pair = headline(made(effects=(unsure, replace(unsure, name="viscous_drag", parameters={}, confounded_with=()))))
+    assert pair.startswith("Other effects may be the causes; if the robot is pulled")
+    # What nothing else does is said, however little is sure of it, and what is likelier than not.
+    alone = replace(unsure, confounded_with=())
+    assert headline(made(effects=(alone,))).startswith("The robot is pulled along +y")
+    assert headline(made(effects=(replace(unsure, probability=0.6),))).startswith("The robot is pulled along +y")
+
+
 def test_the_zero_that_was_taken_to_its_end_is_named() -> None:
     first, *others = made().floors
     floors = (replace(first, at_tolerance=("origin x", "origin z")), *others)

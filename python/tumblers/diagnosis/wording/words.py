@@ -18,7 +18,7 @@ from ..result import EffectEstimate, Gap, NextTrial, Region
 from ..where.wrench_maps import SIGNIFICANT
 from .caution import cautions
 from .condition import condition_of, condition_of_table
-from .phrase import meaning_of, phrase_of, title_of, unit_of
+from .phrase import Phrase, meaning_of, phrase_of, title_of, unit_of
 
 __all__ = [
     "NO_TRIAL",
@@ -96,6 +96,8 @@ _CLOSED = 0.2
 _SLIPS = 0.1
 # And where it is less than this, that they are about that alone is said.
 _MOSTLY = 0.9
+# What is tied and no likelier than this is not told as if it were known.
+_LIKELIER_THAN_NOT = 0.5
 # The interval of a shrink that ends below this would read from 1 to 1 %.
 _ONE_PERCENT = 0.015
 
@@ -130,19 +132,7 @@ def headline(diagnosis: Diagnosis) -> str:
         return f"No gap: the nominal model explains the data to within noise ({left}, {floor})."
     phrases = [phrase_of(effect, diagnosis.dataset) for effect in diagnosis.effects]
     if diagnosis.verdict == "explained" and phrases:
-        scope = _scope(diagnosis)
-        causes = _capital(" and ".join(phrase.cause for phrase in phrases)) + scope
-        amounts = " and ".join(phrase.amount.rstrip(",") if len(phrases) > 1 else phrase.amount for phrase in phrases)
-        together = ", together," if len(phrases) > 1 else ""
-        plural = len(phrases) > 1 or phrases[0].plural
-        if min(gap.shrink.estimate, _own(gap)) < _FORETOLD:
-            close = "close" if plural else "closes"
-            return (
-                f"{causes}: {amounts}{together} {close} the gap, from {_sigmas(gap.after_nuisance_only)} to "
-                f"{_sigmas(_fitted(diagnosis))} where it is fitted; the trials that show it are too few for the "
-                "others to foretell it."
-            )
-        return f"{causes}: {amounts}{together} {'explain' if plural else 'explains'} {_explained(gap)}."
+        return _capital(_of_causes(diagnosis, phrases))
     tried = sum(len(hypothesis.effects) == 1 for hypothesis in diagnosis.ranking)
     none = (
         f"none of the {tried} effects that were tried closes it" if tried > 1 else "no effect that was tried closes it"
@@ -166,6 +156,30 @@ def headline(diagnosis: Diagnosis) -> str:
         f"Unexplained: {left}, and {none}. The best partial cause is that {partial}; "
         f"with it, {_sigmas(gap.after)} are left."
     )
+
+
+def _of_causes(diagnosis: Diagnosis, phrases: list[Phrase]) -> str:
+    """Return what explains the gap, as what is known, or where others do as well as one of those that may."""
+    gap = diagnosis.gap
+    causes = " and ".join(phrase.cause for phrase in phrases) + _scope(diagnosis)
+    amounts = " and ".join(phrase.amount.rstrip(",") if len(phrases) > 1 else phrase.amount for phrase in phrases)
+    together = ", together," if len(phrases) > 1 else ""
+    one = len(phrases) == 1 and not phrases[0].plural
+    if min(gap.shrink.estimate, _own(gap)) < _FORETOLD:
+        does = (
+            f"{'closes' if one else 'close'} the gap, from {_sigmas(gap.after_nuisance_only)} to "
+            f"{_sigmas(_fitted(diagnosis))} where it is fitted; the trials that show it are too few for the "
+            "others to foretell it."
+        )
+    else:
+        does = f"{'explains' if one else 'explain'} {_explained(gap)}."
+    tied = [name for effect in diagnosis.effects for name in effect.confounded_with]
+    likely = min(effect.probability for effect in diagnosis.effects)
+    if tied and likely < _LIKELIER_THAN_NOT:
+        alike = "either of two" if len(tied) == 1 else f"any of {1 + len(tied)}"
+        which = f"{alike} effects may be the cause" if len(phrases) == 1 else "other effects may be the causes"
+        return f"{which}; if {causes} (probability {percent(likely)}), {amounts}{together} {does}"
+    return f"{causes}: {amounts}{together} {does}"
 
 
 def _verdict(diagnosis: Diagnosis) -> str:
