@@ -58,7 +58,7 @@ REFUSED = [
     ('id = "f05"', "id = 5", "trial[0].id", "5"),
     ('id = "slope"', 'id = "f05"', "trial[1].id", "found 'f05' again, expected another id than trial[0]"),
     ("duration_s = 4\n", "", "trial[1].duration_s", "no such key"),
-    ("duration_s = 4", "duration_s = 0", "trial[1].duration_s", "greater than 0"),
+    ("duration_s = 4", "duration_s = 0", "trial[1].duration_s", "greater than 0 (trial 'slope')"),
     (
         "duration_s = 2.0",
         "duration_s = 0.5",

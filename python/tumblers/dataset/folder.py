@@ -138,14 +138,16 @@ def _trial(i: int, value: object, directory: Path, sensor: Sensor) -> LabTrial:
             trial.covers_track("track", sensor, file.time_of)
         return trial
     except InputError as error:
-        raise _in_trial(in_its_csv(error, table["field"]), key) from None
+        raise _in_trial(in_its_csv(error, table["field"]), key, table["id"]) from None
 
 
-def _in_trial(error: InputError, key: str) -> InputError:
-    where = error.key or ""
+def _in_trial(error: InputError, key: str, id_: object) -> InputError:
+    where = (error.key or "").removeprefix("trial.")
     if where.startswith("sensor."):
         return error
-    return InputError(f"{key}.{where.removeprefix('trial.')}", error.found, error.expected)
+    # Among fourteen trials a number is hard to find, but for where the id itself is wrong.
+    expected = error.expected if where == "id" else f"{error.expected} (trial {show(id_)})"
+    return InputError(f"{key}.{where}", error.found, expected)
 
 
 def _field(value: object, directory: Path) -> Field:
