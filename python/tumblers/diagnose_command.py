@@ -49,13 +49,16 @@ def diagnose(
         thread_count("--jobs", jobs)
     if seed < 0:
         raise InputError("--seed", str(seed), "a whole number of at least 0")
-    from .dataset import load
+    from .dataset import likely_slips, load
 
     measured = load(dataset)
     names = None if effects is None else _effect_names(effects)
     from .diagnosis.diagnose import diagnose as run
     from .diagnosis.wording.words import summary
 
+    for slip in likely_slips(measured):
+        # Now rather than after the minutes that a diagnosis takes.
+        typer.echo(f"tumblers: warning: {slip}", err=True)
     start = perf_counter()
     try:
         diagnosis = run(measured, effects=names, jobs=jobs, seed=seed, progress=True)

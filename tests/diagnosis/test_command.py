@@ -125,6 +125,16 @@ def command(monkeypatch: pytest.MonkeyPatch, *arguments: object) -> int:
         return 130
 
 
+def test_a_number_in_another_unit_is_told_before_the_minutes_of_a_diagnosis(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    heavy = replace(lab(tracks=False), robot=replace(lab().robot, mass_kg=0.0378))
+    heavy.save(tmp_path / "data")
+    Computation(monkeypatch, KeyboardInterrupt())
+    assert command(monkeypatch, tmp_path / "data", "--out", tmp_path / "out") == 130
+    assert capsys.readouterr().err.startswith("tumblers: warning: the robot has 1.1")
+
+
 def test_the_command_writes_the_files_and_prints_the_summary(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

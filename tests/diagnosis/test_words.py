@@ -146,6 +146,12 @@ def test_of_what_is_ruled_out_a_terminal_names_a_few_and_the_report_all() -> Non
     assert "more in the report" not in said
 
 
+def test_a_number_in_another_unit_is_among_the_cautions() -> None:
+    substrate = replace(lab().substrate, friction_coefficient=30.0)
+    said = dict(points(made(dataset=replace(lab(), substrate=substrate))))["caution"]
+    assert said.startswith("friction_coefficient = 30 is more than a substrate has")
+
+
 def test_cautions_name_what_weakens_a_diagnosis() -> None:
     assert "caution" not in dict(points(made()))
     said = " ".join(text for label, text in points(outcomes_only()) if label == "caution")

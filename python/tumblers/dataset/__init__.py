@@ -13,6 +13,7 @@ from .folder import load
 from .lab_trial import LabTrial
 from .outcome import Outcome
 from .sensor import Sensor
+from .slip import likely_slips
 from .track import CHANNELS, Track
 
-__all__ = ["CHANNELS", "FORMAT", "Dataset", "LabTrial", "Outcome", "Sensor", "Track", "load"]
+__all__ = ["CHANNELS", "FORMAT", "Dataset", "LabTrial", "Outcome", "Sensor", "Track", "likely_slips", "load"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import isfinite
 
+from ...dataset import likely_slips
 from ...effects.parameter import Nuisance
 from ..diagnosis import Diagnosis
 from ..plausible import neutral_values, plausible_ranges, turning_keys
@@ -31,7 +32,7 @@ def cautions(diagnosis: Diagnosis) -> tuple[str, ...]:
     diagnosis
         What `diagnose` returned.
     """
-    return (*_of_effects(diagnosis), *_of_trials(diagnosis))
+    return (*likely_slips(diagnosis.dataset), *_of_effects(diagnosis), *_of_trials(diagnosis))
 
 
 def _of_effects(diagnosis: Diagnosis) -> list[str]:
