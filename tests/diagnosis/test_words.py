@@ -324,6 +324,12 @@ def test_the_file_says_which_way_what_is_missing_points(axis: str, keys: tuple[s
     assert [entry[key] for key in keys] == [-2e-7, 5e-8]
 
 
+def test_why_refitting_the_sensor_may_widen_a_gap_is_said() -> None:
+    wider = dict(points(made(gap=replace(made().gap, before=16.2, after_nuisance_only=18.0))))["how far"]
+    assert "nuisances refitted: 18.0 σ, which is more, for it is foretold from the other trials; noise" in wider
+    assert "which is more" not in dict(points(made()))["how far"]
+
+
 def test_of_what_refitting_the_camera_closes_no_effect_takes_the_credit() -> None:
     gap = replace(made().gap, before=5.0, after_nuisance_only=2.0, after=1.1)
     assert headline(made(gap=gap)).endswith(

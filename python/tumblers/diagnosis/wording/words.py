@@ -400,6 +400,8 @@ def _how_far(diagnosis: Diagnosis) -> str:
             f"on {count} trials, each left out of a fit once: " if count > 1 else "on one trial, left out of the fit: "
         )
     refitted = f"with only the sensor's nuisances refitted: {_sigmas(gap.after_nuisance_only)}"
+    if count and gap.after_nuisance_only > gap.before + _CLOSED:
+        refitted += ", which is more, for it is foretold from the other trials"
     if diagnosis.verdict == "no_gap":
         stated = f"with a perfect sensor and the numbers as stated: {_sigmas(gap.before)}; {refitted}"
         return f"{held_out}{_sigmas(gap.after)} ({stated}; noise alone: {_sigmas(gap.noise_floor)})."
