@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,7 @@ from tumblers.blind.repeated import Repeated
 from tumblers.blind.score import Scores, _tie_sigma, score_records
 from tumblers.blind.share import Share
 from tumblers.blind.ties import Tie
-from tumblers.diagnosis.gap.floor import TOLERANCES
+from tumblers.dataset import Tolerance
 
 
 def answer(kind: str, *effects: tuple[str, str, dict[str, float]], sigma: float = 5.0, **changes: Any) -> Answer:
@@ -305,10 +305,10 @@ def test_the_page_and_the_tables_show_every_criterion(capsys: pytest.CaptureFixt
 def test_the_page_says_how_far_the_worlds_numbers_are_off() -> None:
     page = page_of(scored())
     # Those that the diagnosis assumes are another file's: the page must not claim more than holds.
-    for name, assumed in TOLERANCES.items():
+    for name, assumed in asdict(Tolerance()).items():
         drawn = DIMENSIONS if name in ("length", "height") else NUMBERS
         same = page.partition("itself assumes of ")[2].partition(";")[0]
-        assert (name in same) == (drawn == assumed), name
+        assert (name.replace("_", " ") in same) == (drawn == assumed), name
     assert f"a standard deviation of {100.0 * NUMBERS:g} %" in page
     alone = f"the world's own step alone show by more than {STEADY_SIGMA:g} sigma"
     assert f"a lab drops a trial in which the nominal numbers' being off and {alone}" in page

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tumblers import Cuboid, Model, Robot, RotatingField, StaticField, Substrate, TableField, dataset
-from tumblers.dataset import CHANNELS, Dataset, LabTrial, Outcome, Sensor, Track
+from tumblers.dataset import CHANNELS, Dataset, LabTrial, Outcome, Sensor, Tolerance, Track
 from tumblers.dataset.track import POSITIONS
 
 ROBOT = Robot(shape=Cuboid(length_m=8e-4, width_m=4e-4, height_m=1e-4), mass_kg=3.78e-8, magnetization_A_per_m=15000.0)
@@ -102,6 +102,8 @@ SENSOR = st.builds(
     heading_of=st.sampled_from([None, "end", "axis"]),
     tracked_point=st.sampled_from([None, "body_centre", "centre_of_mass"]),
 )
+# That of the mass is a default's, and one that is not written.
+SHARE = st.just(0.005) | st.floats(1e-6, 0.3)
 DATASET = st.builds(
     Dataset,
     robot=st.just(ROBOT),
@@ -109,6 +111,7 @@ DATASET = st.builds(
     sensor=SENSOR,
     trials=st.lists(lab_trials(), min_size=1, max_size=4, unique_by=lambda trial: trial.id),
     model=st.builds(Model, magnetic_torque=st.sampled_from(["end_of_step", "midpoint"])),
+    tolerance=st.builds(Tolerance, friction_coefficient=SHARE, mass=SHARE),
     title=st.just("") | NAME,
     model_given=st.sets(st.sampled_from(["magnetic_torque", "adhesion_enters"])).map(tuple),
 )

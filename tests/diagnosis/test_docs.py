@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
 
-from tumblers.diagnosis.gap.floor import TOLERANCES
+from tumblers.dataset import Tolerance
 
 PAGE = Path(__file__).parents[2] / "docs" / "diagnosis.md"
 
@@ -20,4 +21,4 @@ def test_how_well_nominal_numbers_count_as_known_is_stated() -> None:
         for name in re.split(r", | and ", names):
             stated[name.replace("the ", "").replace("field's ", "field ")] = float(share) / 100.0
     stated["friction coefficient"] = stated.pop("coefficient of friction")
-    assert stated == pytest.approx(TOLERANCES)
+    assert {name.replace(" ", "_"): share for name, share in stated.items()} == pytest.approx(asdict(Tolerance()))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from math import atan2, cos, degrees, hypot, sin
 
 import numpy as np
@@ -10,9 +11,9 @@ import pytest
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
+from tumblers.dataset import Tolerance
 from tumblers.diagnosis import diagnose
 from tumblers.diagnosis.fitting.hypothesis import Hypothesis
-from tumblers.diagnosis.gap.floor import TOLERANCES
 from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.diagnosis.what.estimate import SIDE, _ends, _gradients, _whole_way
 from tumblers.diagnosis.what.tolerated import least_deviation
@@ -135,16 +136,15 @@ def test_an_interval_ends_where_the_objective_stays_up(rise: Callable[[float], f
 
 def test_a_factor_is_known_no_better_than_the_nominal_number_that_it_multiplies() -> None:
     scenario = Simulator(plan()).nominal(0)
-    together = hypot(*(TOLERANCES[name] for name in ("magnetization", "field strength", "mass")))
-    assert least_deviation("magnetization_strength", "factor", 0.8, [scenario]) == pytest.approx(0.8 * together)
-    assert least_deviation("friction_coefficient", "factor", 0.5, [scenario]) == pytest.approx(
-        0.5 * TOLERANCES["friction coefficient"]
-    )
+    known_to = Tolerance(friction_coefficient=0.2)
+    together = hypot(known_to.magnetization, known_to.field_strength, known_to.mass)
+    least = partial(least_deviation, scenarios=[scenario], known_to=known_to)
+    assert least("magnetization_strength", "factor", 0.8) == pytest.approx(0.8 * together)
+    assert least("friction_coefficient", "factor", 0.5) == pytest.approx(0.5 * 0.2)
     force = scenario.substrate.electrostatic_force_N
-    assert least_deviation("electrostatic_force", "added_force_N", 1e-7, [scenario]) == pytest.approx(
-        TOLERANCES["electrostatic force"] * force
-    )
-    assert least_deviation("substrate_tilt", "slope_x_deg", 2.0, [scenario]) == 0.0
+    expected = known_to.electrostatic_force * force
+    assert least("electrostatic_force", "added_force_N", 1e-7) == pytest.approx(expected)
+    assert least("substrate_tilt", "slope_x_deg", 2.0) == 0.0
     # What five trials leave open is less than what the lab does not know of its magnet and its coils.
     found = diagnose(measure(plan(), (MagnetizationStrength(factor=0.8),)), effects=["magnetization_strength"])
     (effect,) = found.effects

@@ -7,14 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tumblers.dataset import Tolerance
+from tumblers.diagnosis import diagnose
 from tumblers.diagnosis.fitting.fitter import Fitter
 from tumblers.diagnosis.fitting.hypothesis import Hypothesis
 from tumblers.diagnosis.gap.comparison import Comparison
-from tumblers.diagnosis.gap.floor import TOLERANCES
+from tumblers.diagnosis.gap.nominal_number import NUMBERS
 from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.diagnosis.what.attribute import _may_be_tolerated, _with_tolerated
 from tumblers.diagnosis.what.contender import of_fit, of_nominal
-from tumblers.diagnosis.what.tolerated import _FACTORS, is_tolerated
+from tumblers.diagnosis.what.tolerated import _FACTORS, is_tolerated, tolerated
 from tumblers.effects import CATALOGUE
 from tumblers.effects.base import Effect
 from tumblers.effects.electrostatic_force import ElectrostaticForce
@@ -36,7 +38,7 @@ FORCE_N = 0.03 * plan().substrate.electrostatic_force_N
 def test_every_factor_of_a_nominal_number_is_one() -> None:
     for name, numbers in _FACTORS.items():
         assert {*numbers} <= {parameter.key for parameter in CATALOGUE[name].parameters}
-        assert {*numbers.values()} <= {*TOLERANCES}
+        assert {*numbers.values()} <= {*NUMBERS}
 
 
 @pytest.mark.parametrize(
@@ -57,7 +59,37 @@ def test_every_factor_of_a_nominal_number_is_one() -> None:
 )
 def test_within_three_standard_deviations_of_a_number(effects: tuple[Effect, ...], tolerated: bool) -> None:
     fitter = coarse_lab()
-    assert is_tolerated(effects, [fitter.comparison.simulator.nominal(i) for i in fitter.trials]) == tolerated
+    scenarios = [fitter.comparison.simulator.nominal(i) for i in fitter.trials]
+    assert is_tolerated(effects, scenarios, Tolerance()) == tolerated
+
+
+def test_what_a_lab_knows_worse_may_be_off_by_more() -> None:
+    fitter = coarse_lab()
+    scenarios = [fitter.comparison.simulator.nominal(i) for i in fitter.trials]
+    known_to = Tolerance(friction_coefficient=0.1)
+    assert is_tolerated((FrictionCoefficient(factor=1.29),), scenarios, known_to)
+    assert not is_tolerated((FrictionCoefficient(factor=1.31),), scenarios, known_to)
+    assert not is_tolerated((MagnetizationStrength(factor=1.03),), scenarios, known_to)
+    # A moment, a field and a weight that are hardly known leave a factor of more than the range has.
+    ends = tolerated(MagnetizationStrength, scenarios, Tolerance(magnetization=0.3, field_strength=0.3, mass=0.3))
+    assert ends == ((MagnetizationStrength.parameters[0].low, MagnetizationStrength.parameters[0].high),)
+
+
+@pytest.mark.parametrize(
+    ("factor", "known_to", "verdict"),
+    [
+        (0.95, Tolerance(), "explained"),
+        (0.95, Tolerance(magnetization=0.05), "no_gap"),
+        (0.8, Tolerance(magnetization=0.05), "explained"),
+    ],
+)
+def test_what_a_lab_states_to_know_its_magnet_to_says_what_is_a_gap(
+    factor: float, known_to: Tolerance, verdict: str
+) -> None:
+    lab = replace(measure(plan(), (MagnetizationStrength(factor=factor),), seed=3), tolerance=known_to)
+    found = diagnose(lab, effects=["magnetization_strength"])
+    assert found.verdict == verdict
+    assert [effect.name for effect in found.effects] == ["magnetization_strength"] * (verdict == "explained")
 
 
 # By how many tolerances a moment is off in truth and by a fit, and the deviation that Laplace's Gaussian gives that:
@@ -103,7 +135,7 @@ def test_a_point_within_tolerance_may_be_worse_by_what_evidence_may_be_off(
     # At the end of the tolerance the objective is 6 higher, where 90 % of a Gaussian are within 2.7.
     monkeypatch.setattr(fitter, "again", lambda fit: replace(fit, cost=0.0))
     monkeypatch.setattr(fitter, "cost", lambda *_rest: 6.0)
-    assert _may_be_tolerated(fitter, fit, scenarios, 1.0) == tolerated
+    assert _may_be_tolerated(fitter, fit, 1.0) == tolerated
 
 
 @pytest.mark.parametrize(("deviation", "tolerated"), [(0.02, True), (2e-3, False)])

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import Any
 
-from ..diagnosis.gap.floor import TOLERANCES
+from ..dataset import Tolerance
 from .draw import CLEAR_SIGMA, LEAST_BESIDE_SIGMA, QUIET_SIGMA, QUIET_TRIAL_SIGMA, REPEATS
 from .jitter import DIMENSIONS, NUMBERS
 from .layout import STEADY_SIGMA
@@ -139,9 +140,10 @@ def page_of(scores: Scores) -> str:
 
 
 def _jitter() -> str:
-    drawn = {name: DIMENSIONS if name in ("length", "height") else NUMBERS for name in TOLERANCES}
-    same = [name for name, sigma in drawn.items() if sigma == TOLERANCES[name]]
-    other = [f"{_share(assumed)} of {name}" for name, assumed in TOLERANCES.items() if name not in same]
+    assumed = {name.replace("_", " "): share for name, share in asdict(Tolerance()).items()}
+    drawn = {name: DIMENSIONS if name in ("length", "height") else NUMBERS for name in assumed}
+    same = [name for name, sigma in drawn.items() if sigma == assumed[name]]
+    other = [f"{_share(share)} of {name}" for name, share in assumed.items() if name not in same]
     return (
         "The world's numbers are off from those that the lab believes, each by its own draw, with a standard deviation "
         f"of {_share(NUMBERS)}, the lengths of its shape with one of {_share(DIMENSIONS)}. These are the standard "

@@ -14,6 +14,18 @@ from .lab_trial import LabTrial
 from .outcome import Outcome
 from .sensor import Sensor
 from .slip import likely_slips
+from .tolerance import Tolerance
 from .track import CHANNELS, Track
 
-__all__ = ["CHANNELS", "FORMAT", "Dataset", "LabTrial", "Outcome", "Sensor", "Track", "likely_slips", "load"]
+__all__ = [
+    "CHANNELS",
+    "FORMAT",
+    "Dataset",
+    "LabTrial",
+    "Outcome",
+    "Sensor",
+    "Tolerance",
+    "Track",
+    "likely_slips",
+    "load",
+]

@@ -16,11 +16,18 @@ from ..substrate import Substrate
 from .document import texts_of, write_dataset
 from .lab_trial import LabTrial
 from .sensor import Sensor
+from .tolerance import Tolerance
 
 __all__ = ["FORMAT", "Dataset"]
 
 FORMAT = "tumblers-dataset/1"
-_PARTS: dict[str, Any] = {"robot": Robot, "substrate": Substrate, "sensor": Sensor, "model": Model}
+_PARTS: dict[str, Any] = {
+    "robot": Robot,
+    "substrate": Substrate,
+    "sensor": Sensor,
+    "model": Model,
+    "tolerance": Tolerance,
+}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -35,6 +42,8 @@ class Dataset:
         How the tracks were measured.
     trials
         What was measured, at least one, each with an id of its own.
+    tolerance
+        How well the lab knows the nominal model's numbers.
     title
         One line.
     model_given
@@ -55,6 +64,7 @@ class Dataset:
     sensor: Sensor
     trials: tuple[LabTrial, ...]
     model: Model = attribute(default_factory=Model)
+    tolerance: Tolerance = attribute(default_factory=Tolerance)
     title: str = ""
     model_given: tuple[str, ...] = ()
     directory: Path | None = attribute(default=None, compare=False)

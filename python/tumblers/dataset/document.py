@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from ..atomic import write_files
 from ..field import field_to_table
 from ..section import as_section, write_entry, write_section, write_value
+from .tolerance import Tolerance
 from .track_csv import write_track_csv
 
 if TYPE_CHECKING:
@@ -89,10 +90,18 @@ def _to_toml(dataset: Dataset, names: list[str], version: str) -> str:
             write_section("robot", dataset.robot.to_table()),
             write_section("substrate", as_section(dataset.substrate)),
             *([write_section("model", model)] if model else []),
+            *_tolerance(dataset.tolerance),
             write_section("sensor", as_section(dataset.sensor)),
             *(_trial(trial, name) for trial, name in zip(dataset.trials, names, strict=True)),
         ]
     )
+
+
+def _tolerance(tolerance: Tolerance) -> list[str]:
+    """Return the section of what is not as it is assumed where nothing is stated, nothing where all is."""
+    assumed = as_section(Tolerance())
+    stated = {key: share for key, share in as_section(tolerance).items() if share != assumed[key]}
+    return [write_section("tolerance", stated)] if stated else []
 
 
 def _trial(trial: LabTrial, name: str) -> str:

@@ -21,6 +21,7 @@ from .dataset import FORMAT, Dataset
 from .lab_trial import LabTrial
 from .outcome import Outcome
 from .sensor import TYPICAL_ANGLE_NOISE_DEG, TYPICAL_POSITION_NOISE_M, Sensor
+from .tolerance import Tolerance
 from .track import ANGLES, Track
 from .track_csv import TrackFile, read_track_csv
 
@@ -70,12 +71,13 @@ def _dataset(contents: str, directory: Path) -> Dataset:
     table = parse_toml(contents)
     if "format" in table and table["format"] != FORMAT:
         raise InputError("format", show(table["format"]), f"'{FORMAT}'")
-    known_keys("", table, [*_REQUIRED, "title", "model", "sensor"], _REQUIRED)
+    known_keys("", table, [*_REQUIRED, "title", "model", "tolerance", "sensor"], _REQUIRED)
     if not isinstance(table["trial"], list):
         raise InputError("trial", show(table["trial"]), "an array of tables [[trial]]")
     robot = Robot.from_table(table["robot"])
     substrate = read_section(Substrate, "substrate", table["substrate"])
     model = read_section(Model, "model", table.get("model", {}))
+    tolerance = read_section(Tolerance, "tolerance", table.get("tolerance", {}))
     stated = require_table("sensor", table.get("sensor", {}))
     sensor = read_section(Sensor, "sensor", {**_TYPICAL, **stated})
     trials = tuple(_trial(i, entry, directory, sensor) for i, entry in enumerate(table["trial"]))
@@ -88,6 +90,7 @@ def _dataset(contents: str, directory: Path) -> Dataset:
         robot=robot,
         substrate=substrate,
         model=model,
+        tolerance=tolerance,
         sensor=sensor,
         trials=trials,
         model_given=tuple(table.get("model", {})),

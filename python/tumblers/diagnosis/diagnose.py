@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from math import pi
 from time import perf_counter
 
@@ -23,7 +23,6 @@ from .diagnosis import Diagnosis
 from .fitting.fitter import Fitter
 from .fitting.sandwich import MOST_FACTOR
 from .gap.comparison import Comparison
-from .gap.floor import TOLERANCES
 from .gap.job import Job
 from .gap.loss import robust_cost
 from .gap.predictive import is_right
@@ -353,7 +352,8 @@ def _assumptions(dataset: Dataset, comparison: Comparison, attribution: Attribut
     simulator, sensor = comparison.simulator, comparison.dataset.sensor
     tried = sorted(c.names[0] for c in attribution.contenders if len(c.names) == 1)
     clock = "half a frame" if sensor.time_offset_s is None else f"{1e3 * sensor.time_offset_s:g} ms"
-    nominal = ", ".join(f"{name} {100.0 * share:g} %" for name, share in TOLERANCES.items())
+    known_to = asdict(dataset.tolerance)
+    nominal = ", ".join(f"{name.replace('_', ' ')} {100.0 * share:g} %" for name, share in known_to.items())
     given = "magnetic_torque" in comparison.dataset.model_given
     stated = "as the dataset states" if given else "which the dataset leaves open"
     origin = f"{1e6 * sensor.origin_tolerance_m:g} µm"

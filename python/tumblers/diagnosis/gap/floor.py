@@ -36,10 +36,8 @@ from scipy.linalg.lapack import dtrtri
 from scipy.ndimage import maximum_filter1d
 
 from ...effects.base import Effect
-from ...effects.size_error import SizeError
-from ...field import RotatingField, StaticField, TableField
-from ...scenario import Scenario
 from .job import Edit, Job
+from .nominal_number import NUMBERS, moved_by
 from .pose import Path
 from .reading import BORDERS, Reader
 from .simulator import SHORTEST_STEP_S, Simulator
@@ -47,7 +45,6 @@ from .simulator import SHORTEST_STEP_S, Simulator
 __all__ = [
     "MOST_OFF",
     "SHARED",
-    "TOLERANCES",
     "Floor",
     "Sensitivity",
     "build_floor",
@@ -58,19 +55,8 @@ __all__ = [
 Floats = NDArray[np.float64]
 _NO_CAMERA = np.zeros(2)
 
-# One standard deviation of what a lab's nominal numbers may be off by, as shares.
-TOLERANCES = {
-    "mass": 0.005,
-    "magnetization": 0.005,
-    "field strength": 0.005,
-    "friction coefficient": 0.005,
-    "adhesion": 0.01,
-    "electrostatic force": 0.01,
-    "length": 0.001,
-    "height": 0.001,
-}
 # Nuisances that all trials share beside the camera's: the tolerances, and the step.
-SHARED = len(TOLERANCES) + 1
+SHARED = len(NUMBERS) + 1
 # A nominal number is not off by more than so many of its tolerances.
 MOST_OFF = 3.0
 # The step is halved until this moves the path by less, in noise sigmas.
@@ -156,54 +142,6 @@ class Floor:
         return replace(self, whiten=whiten, valid=valid, outcome_scale={}, tolerance=tolerance)
 
 
-def _scaled_moment(scenario: Scenario) -> Scenario:
-    robot = scenario.robot
-    share = 1.0 + TOLERANCES["magnetization"]
-    return replace(scenario, robot=replace(robot, magnetization_A_per_m=robot.magnetization_A_per_m * share))
-
-
-def _scaled_mass(scenario: Scenario) -> Scenario:
-    robot = scenario.robot
-    # The magnetic moment keeps its own tolerance, and follows the volume, not the mass.
-    return replace(scenario, robot=replace(robot, mass_kg=robot.total_mass_kg * (1.0 + TOLERANCES["mass"])))
-
-
-def _scaled_field(scenario: Scenario) -> Scenario:
-    field, share = scenario.field, 1.0 + TOLERANCES["field strength"]
-    if isinstance(field, TableField):
-        rows = tuple((x * share, y * share, z * share) for x, y, z in field.field_T)
-        return replace(scenario, field=replace(field, field_T=rows))
-    assert isinstance(field, RotatingField | StaticField)
-    return replace(scenario, field=replace(field, strength_T=field.strength_T * share))
-
-
-def _scaled_substrate(key: str, name: str) -> Edit:
-    def edit(scenario: Scenario) -> Scenario:
-        value = getattr(scenario.substrate, key) * (1.0 + TOLERANCES[name])
-        return replace(scenario, substrate=replace(scenario.substrate, **{key: value}))
-
-    return edit
-
-
-def _scaled_size(which: str) -> Edit:
-    def edit(scenario: Scenario) -> Scenario:
-        return SizeError(**{f"{which}_factor": 1.0 + TOLERANCES[which]}).edit(scenario)
-
-    return edit
-
-
-_EDITS: tuple[Edit, ...] = (
-    _scaled_mass,
-    _scaled_moment,
-    _scaled_field,
-    _scaled_substrate("friction_coefficient", "friction coefficient"),
-    _scaled_substrate("adhesion_N_per_m2", "adhesion"),
-    _scaled_substrate("electrostatic_force_N", "electrostatic force"),
-    _scaled_size("length"),
-    _scaled_size("height"),
-)
-
-
 @dataclass(frozen=True, eq=False)
 class Sensitivity:
     """What moves the path of one trial that should not, around one hypothesis.
@@ -266,7 +204,11 @@ def measure_sensitivity(
     trials = range(len(readers))
     jobs = [Job(i, effects, divisor=divisor) for divisor in (1, 2) for i in trials]
     # A small change of a number is seen in twice the step as well.
-    edits = (simulator.coarse, simulator.twice, *(_in_twice(simulator, edit) for edit in _EDITS))
+    edits = (
+        simulator.coarse,
+        simulator.twice,
+        *(_in_twice(simulator, edit) for edit in moved_by(simulator.dataset.tolerance)),
+    )
     jobs += [Job(i, effects, edit=edit) for i in trials for edit in edits]
     paths = simulator.run(jobs)
     count, first = len(edits), 2 * len(readers)

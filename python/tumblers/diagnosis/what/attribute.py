@@ -29,7 +29,6 @@ from scipy.stats import chi2
 
 from ...effects.base import Effect
 from ...progress import OnPhase
-from ...scenario import Scenario
 from ..fitting.fit import Fit
 from ..fitting.fitter import Fitter
 from ..gap.comparison import Comparison
@@ -232,26 +231,27 @@ def _nominal_is_right(fitter: Fitter) -> bool:
 
 def _with_tolerated(fitter: Fitter, ranked: Sequence[Contender], dispersion: float) -> list[Contender]:
     """Count what says no more than that nominal numbers are off within their tolerances as the nominal model."""
-    scenarios = [fitter.comparison.simulator.nominal(i) for i in fitter.trials]
-    same = [c for c in ranked if c.fit is None or _may_be_tolerated(fitter, c.fit, scenarios, dispersion)]
+    same = [c for c in ranked if c.fit is None or _may_be_tolerated(fitter, c.fit, dispersion)]
     probability, evidence = sum(c.probability for c in same), max(c.log_evidence for c in same)
     made = [replace(c, probability=0.0, merged=True) if c.names and c in same else c for c in ranked]
     made = [c if c.names else replace(c, probability=probability, log_evidence=evidence) for c in made]
     return sorted(made, key=lambda c: (-c.log_evidence, len(c.names)))
 
 
-def _may_be_tolerated(fitter: Fitter, fit: Fit, scenarios: Sequence[Scenario], dispersion: float) -> bool:
+def _may_be_tolerated(fitter: Fitter, fit: Fit, dispersion: float) -> bool:
     """Return whether a fit, or a point that the data allow as well, is within what nominal numbers may be off.
 
     They allow a point within 90 % of Laplace's Gaussian where the objective is about as high as that foretells: past a
     threshold the Gaussian knows nothing.
     """
     hypothesis = fit.hypothesis
-    if is_tolerated(hypothesis.effects(fit.point), scenarios):
+    scenarios = [fitter.comparison.simulator.nominal(i) for i in fitter.trials]
+    known_to = fitter.comparison.dataset.tolerance
+    if is_tolerated(hypothesis.effects(fit.point), scenarios, known_to):
         return True
     ends: list[tuple[float, float]] = []
     for kind in hypothesis.kinds:
-        own = tolerated(kind, scenarios)
+        own = tolerated(kind, scenarios, known_to)
         if own is None:
             return False
         ends += zip(*(kind.to_fit(values) for values in zip(*own, strict=True)), strict=True)

@@ -5,25 +5,28 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from math import hypot
 
+from ...dataset import Tolerance
 from ...effects.base import Effect
 from ...scenario import Scenario
-from ..gap.floor import MOST_OFF, TOLERANCES
+from ..gap.floor import MOST_OFF
 
 __all__ = ["is_tolerated", "least_deviation", "tolerated"]
 
 # Parameters that are a nominal number's factor, and the number; others of these effects are not tolerated at all.
 _FACTORS: Mapping[str, Mapping[str, str]] = {
     "magnetization_strength": {"factor": "magnetization"},
-    "friction_coefficient": {"factor": "friction coefficient"},
+    "friction_coefficient": {"factor": "friction_coefficient"},
     "adhesion_coefficient": {"factor": "adhesion"},
     "size_error": {"length_factor": "length", "height_factor": "height"},
 }
 _FORCE = "electrostatic_force"
 # Of a torque m × B nobody knows whether the moment or the field is off, nor of what it lifts whether the weight is.
-_SAME: Mapping[str, tuple[str, ...]] = {"magnetization": ("field strength", "mass")}
+_SAME: Mapping[str, tuple[str, ...]] = {"magnetization": ("field_strength", "mass")}
 
 
-def tolerated(kind: type[Effect], scenarios: Sequence[Scenario]) -> tuple[tuple[float, float], ...] | None:
+def tolerated(
+    kind: type[Effect], scenarios: Sequence[Scenario], known_to: Tolerance
+) -> tuple[tuple[float, float], ...] | None:
     """Return between which values of each parameter an effect says what a nominal number may be off.
 
     Three standard deviations of the number's tolerance either way; None for what no nominal number's being off does,
@@ -35,18 +38,24 @@ def tolerated(kind: type[Effect], scenarios: Sequence[Scenario]) -> tuple[tuple[
         The effect.
     scenarios
         The nominal ones of all trials.
+    known_to
+        How well the lab knows its numbers.
     """
     if kind.name == _FORCE:
-        most = MOST_OFF * _force_deviation(scenarios)
+        most = MOST_OFF * _force_deviation(scenarios, known_to)
         return ((-most, most),) if most > 0.0 else None
     numbers = _FACTORS.get(kind.name)
     if numbers is None:
         return None
-    shares = [MOST_OFF * _share(numbers[p.key]) if p.key in numbers else 0.0 for p in kind.parameters]
-    return tuple((p.neutral - share, p.neutral + share) for p, share in zip(kind.parameters, shares, strict=True))
+    shares = [MOST_OFF * _share(numbers[p.key], known_to) if p.key in numbers else 0.0 for p in kind.parameters]
+    # A number that is hardly known may be off by more than it can be.
+    return tuple(
+        (max(p.neutral - share, p.low), min(p.neutral + share, p.high))
+        for p, share in zip(kind.parameters, shares, strict=True)
+    )
 
 
-def is_tolerated(effects: Sequence[Effect], scenarios: Sequence[Scenario]) -> bool:
+def is_tolerated(effects: Sequence[Effect], scenarios: Sequence[Scenario], known_to: Tolerance) -> bool:
     """Return whether each effect keeps a nominal number within three standard deviations of its tolerance.
 
     Parameters
@@ -55,16 +64,18 @@ def is_tolerated(effects: Sequence[Effect], scenarios: Sequence[Scenario]) -> bo
         What is named.
     scenarios
         The nominal ones of all trials.
+    known_to
+        How well the lab knows its numbers.
     """
 
     def within(effect: Effect) -> bool:
-        ends = tolerated(type(effect), scenarios)
+        ends = tolerated(type(effect), scenarios, known_to)
         return ends is not None and all(a <= v <= b for v, (a, b) in zip(effect.vector(), ends, strict=True))
 
     return bool(effects) and all(map(within, effects))
 
 
-def least_deviation(name: str, key: str, value: float, scenarios: Sequence[Scenario]) -> float:
+def least_deviation(name: str, key: str, value: float, scenarios: Sequence[Scenario], known_to: Tolerance) -> float:
     """Return the standard deviation that a parameter has at least: a factor's is that of its number.
 
     Parameters
@@ -75,17 +86,19 @@ def least_deviation(name: str, key: str, value: float, scenarios: Sequence[Scena
         The parameter.
     scenarios
         The nominal ones of all trials.
+    known_to
+        How well the lab knows its numbers.
     """
     if name == _FORCE:
-        return _force_deviation(scenarios)
+        return _force_deviation(scenarios, known_to)
     number = _FACTORS.get(name, {}).get(key)
-    return 0.0 if number is None else value * _share(number)
+    return 0.0 if number is None else value * _share(number, known_to)
 
 
-def _share(number: str) -> float:
+def _share(number: str, known_to: Tolerance) -> float:
     """Return the standard deviation of a nominal number's factor, with that of others that nobody can tell from it."""
-    return hypot(*(TOLERANCES[n] for n in (number, *_SAME.get(number, ()))))
+    return hypot(*(getattr(known_to, n) for n in (number, *_SAME.get(number, ()))))
 
 
-def _force_deviation(scenarios: Sequence[Scenario]) -> float:
-    return TOLERANCES["electrostatic force"] * min(s.substrate.electrostatic_force_N for s in scenarios)
+def _force_deviation(scenarios: Sequence[Scenario], known_to: Tolerance) -> float:
+    return known_to.electrostatic_force * min(s.substrate.electrostatic_force_N for s in scenarios)
