@@ -1,13 +1,13 @@
 from __future__ import annotations
 
 import re
-from dataclasses import fields
+from dataclasses import asdict, fields
 from pathlib import Path
 
 import numpy as np
 
 from tumblers import dataset
-from tumblers.dataset import CHANNELS, LabTrial, Outcome, Sensor
+from tumblers.dataset import CHANNELS, LabTrial, Outcome, Sensor, Tolerance
 from tumblers.diagnosis.gap.comparison import Comparison
 from tumblers.diagnosis.gap.predictive import is_right
 from tumblers.diagnosis.gap.simulator import Simulator
@@ -44,5 +44,11 @@ def test_the_example_loads(tmp_path: Path) -> None:
 
 
 def test_every_key_of_the_format_is_explained() -> None:
-    for key in {f.name for part in (Sensor, LabTrial, Outcome) for f in fields(part)} | set(CHANNELS):
+    for key in {f.name for part in (Sensor, Tolerance, LabTrial, Outcome) for f in fields(part)} | set(CHANNELS):
         assert f"`{key}`" in TEXT, key
+
+
+def test_the_tolerances_that_are_assumed_are_stated() -> None:
+    for key, share in asdict(Tolerance()).items():
+        (row,) = (line for line in TEXT.splitlines() if line.startswith("|") and f"`{key}`" in line)
+        assert row.split("|")[2].strip() == f"{share:g}", key

@@ -60,7 +60,7 @@ REFUSED = [
     ('id = "f05"', 'id = " "', "trial[0].id", "a name of printable characters"),
     ('id = "f05"', "id = 5", "trial[0].id", "5"),
     ('id = "slope"', 'id = "f05"', "trial[1].id", "found 'f05' again, expected another id than trial[0]"),
-    ("duration_s = 4\n", "", "trial[1].duration_s", "no such key"),
+    ("duration_s = 4\n", "", "trial[1].duration_s", "duration_s in [trial] (trial 'slope')"),
     ("duration_s = 4", "duration_s = 0", "trial[1].duration_s", "greater than 0 (trial 'slope')"),
     (
         "duration_s = 2.0",
@@ -161,7 +161,8 @@ def test_the_sound_one_loads_also_with_windows_lines(folder: Path) -> None:
 def test_a_track_belongs_to_one_trial(folder: Path) -> None:
     second = 'track = "tracks/../tracks/f05.csv"\n'
     (folder / "dataset.toml").write_text(TEXT.replace("outcome =", f"{second}outcome ="))
-    line = r"trial\[1\]\.track: found 'tracks/\.\./tracks/f05\.csv' again, expected another file than trial\[0\]$"
+    found = r"trial\[1\]\.track: found 'tracks/\.\./tracks/f05\.csv' again"
+    line = rf"{found}, expected another file than trial\[0\] \(trials 'f05', 'slope'\)$"
     with pytest.raises(InputError, match=line):
         dataset.load(folder)
 

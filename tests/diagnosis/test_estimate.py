@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from math import atan2, cos, degrees, hypot, sin
 
@@ -135,14 +136,13 @@ def test_an_interval_ends_where_the_objective_stays_up(rise: Callable[[float], f
 
 
 def test_a_factor_is_known_no_better_than_the_nominal_number_that_it_multiplies() -> None:
-    scenario = Simulator(plan()).nominal(0)
     known_to = Tolerance(friction_coefficient=0.2)
+    lab = replace(plan(), tolerance=known_to)
     together = hypot(known_to.magnetization, known_to.field_strength, known_to.mass)
-    least = partial(least_deviation, scenarios=[scenario], known_to=known_to)
+    least = partial(least_deviation, lab=lab)
     assert least("magnetization_strength", "factor", 0.8) == pytest.approx(0.8 * together)
     assert least("friction_coefficient", "factor", 0.5) == pytest.approx(0.5 * 0.2)
-    force = scenario.substrate.electrostatic_force_N
-    expected = known_to.electrostatic_force * force
+    expected = known_to.electrostatic_force * lab.substrate.electrostatic_force_N
     assert least("electrostatic_force", "added_force_N", 1e-7) == pytest.approx(expected)
     assert least("substrate_tilt", "slope_x_deg", 2.0) == 0.0
     # What five trials leave open is less than what the lab does not know of its magnet and its coils.

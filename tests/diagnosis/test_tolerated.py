@@ -14,9 +14,11 @@ from tumblers.diagnosis.fitting.hypothesis import Hypothesis
 from tumblers.diagnosis.gap.comparison import Comparison
 from tumblers.diagnosis.gap.nominal_number import NUMBERS
 from tumblers.diagnosis.gap.simulator import Simulator
+from tumblers.diagnosis.quantity import sigmas
 from tumblers.diagnosis.what.attribute import _may_be_tolerated, _with_tolerated
 from tumblers.diagnosis.what.contender import of_fit, of_nominal
 from tumblers.diagnosis.what.tolerated import _FACTORS, is_tolerated, tolerated
+from tumblers.diagnosis.wording.words import headline
 from tumblers.effects import CATALOGUE
 from tumblers.effects.base import Effect
 from tumblers.effects.electrostatic_force import ElectrostaticForce
@@ -58,21 +60,18 @@ def test_every_factor_of_a_nominal_number_is_one() -> None:
     ],
 )
 def test_within_three_standard_deviations_of_a_number(effects: tuple[Effect, ...], tolerated: bool) -> None:
-    fitter = coarse_lab()
-    scenarios = [fitter.comparison.simulator.nominal(i) for i in fitter.trials]
-    assert is_tolerated(effects, scenarios, Tolerance()) == tolerated
+    assert is_tolerated(effects, plan()) == tolerated
 
 
 def test_what_a_lab_knows_worse_may_be_off_by_more() -> None:
-    fitter = coarse_lab()
-    scenarios = [fitter.comparison.simulator.nominal(i) for i in fitter.trials]
-    known_to = Tolerance(friction_coefficient=0.1)
-    assert is_tolerated((FrictionCoefficient(factor=1.29),), scenarios, known_to)
-    assert not is_tolerated((FrictionCoefficient(factor=1.31),), scenarios, known_to)
-    assert not is_tolerated((MagnetizationStrength(factor=1.03),), scenarios, known_to)
+    lab = replace(plan(), tolerance=Tolerance(friction_coefficient=0.1))
+    assert is_tolerated((FrictionCoefficient(factor=1.29),), lab)
+    assert not is_tolerated((FrictionCoefficient(factor=1.31),), lab)
+    assert not is_tolerated((MagnetizationStrength(factor=1.03),), lab)
     # A moment, a field and a weight that are hardly known leave a factor of more than the range has.
-    ends = tolerated(MagnetizationStrength, scenarios, Tolerance(magnetization=0.3, field_strength=0.3, mass=0.3))
-    assert ends == ((MagnetizationStrength.parameters[0].low, MagnetizationStrength.parameters[0].high),)
+    hardly = replace(plan(), tolerance=Tolerance(magnetization=0.3, field_strength=0.3, mass=0.3))
+    (factor,) = MagnetizationStrength.parameters
+    assert tolerated(MagnetizationStrength, hardly) == ((factor.low, factor.high),)
 
 
 @pytest.mark.parametrize(
@@ -89,6 +88,8 @@ def test_what_a_lab_states_to_know_its_magnet_to_says_what_is_a_gap(
     lab = replace(measure(plan(), (MagnetizationStrength(factor=factor),), seed=3), tolerance=known_to)
     found = diagnose(lab, effects=["magnetization_strength"])
     assert found.verdict == verdict
+    # What the tolerance takes is no gap in what is said of it either.
+    assert verdict != "no_gap" or sigmas(found.gap.after) in headline(found)
     assert [effect.name for effect in found.effects] == ["magnetization_strength"] * (verdict == "explained")
 
 

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tumblers.dataset import Tolerance
 from tumblers.diagnosis.quantity import percent, rounded, with_interval
 from tumblers.diagnosis.report.where import where_part
 from tumblers.diagnosis.result import EffectEstimate, Interval, RankedHypothesis, Region
@@ -53,7 +54,7 @@ def test_where_there_is_no_gap_what_is_left_is_told_and_what_is_likelier_all_the
 
 
 def test_where_outcomes_alone_leave_no_gap_nothing_is_said_of_noise() -> None:
-    gap = replace(no_gap().gap, noise_floor=0.0, after_nuisance_only=0.7)
+    gap = replace(no_gap().gap, noise_floor=0.0, after_nuisance_only=0.9, after=0.7)
     said = headline(replace(no_gap(), gap=gap))
     assert said == "No gap: the nominal model contradicts no outcome (near the border of one, if at all: 0.7 σ)."
 
@@ -71,6 +72,7 @@ def test_of_what_is_tied_and_unlikely_the_headline_does_not_say_that_it_is_so() 
     assert headline(made(effects=(more,))).startswith("Any of 3 effects may be the cause; if the robot is pulled")
     pair = headline(made(effects=(unsure, replace(unsure, name="viscous_drag", parameters={}, confounded_with=()))))
     assert pair.startswith("Other effects may be the causes; if the robot is pulled")
+    assert "(probabilities 19 % and 19 %)" in pair
     # What nothing else does is said, however little is sure of it, and what is likelier than not.
     alone = replace(unsure, confounded_with=())
     assert headline(made(effects=(alone,))).startswith("The robot is pulled along +y")
@@ -150,6 +152,16 @@ def test_a_number_in_another_unit_is_among_the_cautions() -> None:
     substrate = replace(lab().substrate, friction_coefficient=30.0)
     said = dict(points(made(dataset=replace(lab(), substrate=substrate))))["caution"]
     assert said.startswith("friction_coefficient = 30 is more than a substrate has")
+
+
+def test_an_effect_that_is_within_a_stated_tolerance_is_said_to_be() -> None:
+    friction = EffectEstimate("friction_coefficient", 0.9, {"factor": Interval(1.08, 1.05, 1.1)}, ())
+    wide = replace(lab(), tolerance=Tolerance(friction_coefficient=0.03))
+    for dataset, said in ((lab(), False), (wide, True)):
+        chosen = (CATALOGUE["friction_coefficient"].from_vector([1.08, 0.0]),)
+        made_of = made(dataset=dataset, effects=(friction,), chosen=chosen)
+        words = [text for label, text in points(made_of) if label == "caution"]
+        assert any("measure that number first" in text for text in words) == said
 
 
 def test_cautions_name_what_weakens_a_diagnosis() -> None:

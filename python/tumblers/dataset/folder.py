@@ -114,7 +114,9 @@ def _each_has_its_own_track(entries: Sequence[Mapping[str, str]], directory: Pat
         if "track" in entry:
             before = first.setdefault((directory / entry["track"]).resolve(), i)
             if before != i:
-                expected = f"another file than trial[{before}]"
+                expected = (
+                    f"another file than trial[{before}] (trials {show(entries[before]['id'])}, {show(entry['id'])})"
+                )
                 raise InputError(f"trial[{i}].track", f"{show(entry['track'])} again", expected)
 
 
@@ -122,12 +124,12 @@ def _trial(i: int, value: object, directory: Path, sensor: Sensor) -> LabTrial:
     key = f"trial[{i}]"
     table = dict(require_table(key, value))
     names = [f.name for f in fields(LabTrial)]
-    known_keys(key, table, names, ["id", "field", "duration_s"])
 
     def read(name: str, reader: Callable[[object], T]) -> T | None:
         return reader(table[name]) if name in table else None
 
     try:
+        known_keys("trial", table, names, ["id", "field", "duration_s"])
         field = _field(table["field"], directory)
         file = read("track", lambda entry: _track(entry, directory, sensor))
         made = {
@@ -141,15 +143,16 @@ def _trial(i: int, value: object, directory: Path, sensor: Sensor) -> LabTrial:
             trial.covers_track("track", sensor, file.time_of)
         return trial
     except InputError as error:
-        raise _in_trial(in_its_csv(error, table["field"]), key, table["id"]) from None
+        raise _in_trial(in_its_csv(error, table.get("field")), key, table.get("id")) from None
 
 
 def _in_trial(error: InputError, key: str, id_: object) -> InputError:
     where = (error.key or "").removeprefix("trial.")
     if where.startswith("sensor."):
         return error
-    # Among fourteen trials a number is hard to find, but for where the id itself is wrong.
-    expected = error.expected if where == "id" else f"{error.expected} (trial {show(id_)})"
+    # Among fourteen trials a number is hard to find.
+    named = isinstance(id_, str) and where != "id"
+    expected = f"{error.expected} (trial {show(id_)})" if named else error.expected
     return InputError(f"{key}.{where}", error.found, expected)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..field import Field, RotatingField, TableField
+from ..field import Field, TableField
 from .track import POSITIONS, Track
 
 if TYPE_CHECKING:
@@ -16,13 +16,12 @@ if TYPE_CHECKING:
 
 __all__ = ["likely_slips"]
 
-# The strongest magnets that stand in a laboratory, T; iron is saturated at 2.2 T and 1.7e6 A/m.
-_MOST_FIELD_T = 10.0
-_MOST_ROTATING_T = 1.0
+# What coils and magnets around a microscope do not reach, T; no magnet has more than iron saturated has, A/m.
+_MOST_FIELD_T = 1.0
 _MOST_MAGNETIZATION_A_PER_M = 2e6
 # An aerogel, and osmium with room for a slip in the volume, kg/m³.
 _LEAST_DENSITY, _MOST_DENSITY = 10.0, 25e3
-# From the centre to the farthest point: a microrobot is a hundredth of it, m.
+# From the centre to the farthest point; a microrobot has a hundredth of it, m.
 _MOST_SIZE_M = 0.05
 # Rubber on a dry rough face has about a third of it.
 _MOST_FRICTION = 10.0
@@ -64,11 +63,12 @@ def _of_robot(dataset: Dataset) -> Iterator[str]:
 
 
 def _of_trials(dataset: Dataset) -> Iterator[str]:
-    strong = {trial.id: _strength_T(trial.field) for trial in dataset.trials if _is_too_strong(trial.field)}
+    strengths = {trial.id: _strength_T(trial.field) for trial in dataset.trials}
+    strong = {id_: strength for id_, strength in strengths.items() if strength > _MOST_FIELD_T}
     if strong:
         most = max(strong, key=strong.__getitem__)
         of = "" if len(strong) == 1 else f", as in {len(strong)} trials"
-        yield f"the field of {most} is {strong[most]:.3g} T strong{of}, which no laboratory's coils give: is it in T?"
+        yield f"the field of {most} is {strong[most]:.3g} T strong{of}, more than a lab's coils give: is it in T?"
     ways = {trial.id: _way_m(trial.track) for trial in dataset.trials if trial.track is not None}
     far = [id_ for id_, way in ways.items() if way > _MOST_WAY_M]
     if far:
@@ -80,10 +80,6 @@ def _strength_T(field: Field) -> float:
     if isinstance(field, TableField):
         return max(hypot(*row) for row in field.field_T)
     return field.strength_T
-
-
-def _is_too_strong(field: Field) -> bool:
-    return _strength_T(field) > (_MOST_ROTATING_T if isinstance(field, RotatingField) else _MOST_FIELD_T)
 
 
 def _way_m(track: Track) -> float:

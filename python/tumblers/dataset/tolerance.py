@@ -16,12 +16,13 @@ _MOST = 0.3
 class Tolerance:
     """One standard deviation of what each nominal number may be off by, as a share of it, the same in all trials.
 
-    What is off by more than three of them is an effect. The defaults are those with which blind datasets are drawn.
+    What is off by more than three of them is an effect. The defaults are what blind datasets are drawn with, but for
+    adhesion and electrostatic force, of which twice as much is assumed.
 
     Attributes
     ----------
     mass, magnetization, length, height
-        Of the robot; `magnetization` is of the moment.
+        Of the robot; `magnetization` is of the magnetic moment, `length` and `height` are along the body's y and z.
     field_strength
         Of the coils.
     friction_coefficient, adhesion, electrostatic_force

@@ -18,7 +18,7 @@ from ...camera import Camera
 from ...core_errors import core_error
 from ...dataset import Dataset
 from ...effects.base import Effect
-from ...errors import InputError, TumblersError
+from ...errors import InputError, TumblersError, show
 from ...field import RotatingField, TableField
 from ...model import RELEASED_TORQUE, Model
 from ...progress import native_call
@@ -120,7 +120,7 @@ class Simulator:
         for i, trial in enumerate(trials):
             step = longest_in(trial.field)
             if trial.duration_s < 2.0 * step:
-                expected = f"at least two steps of the simulation, {2.0 * step:g} s"
+                expected = f"at least two steps of the simulation, {2.0 * step:g} s (trial {show(trial.id)})"
                 raise InputError(f"trial[{i}].duration_s", f"{trial.duration_s:g} s", expected)
         longest = max(trial.duration_s for trial in trials)
         offset = sensor.clock_tolerance_s(0.0)
@@ -138,7 +138,7 @@ class Simulator:
             trial, more = trials[most], lasts[most] - trials[most].duration_s
             cycles = f" at {trial.field.frequency_Hz:g} Hz" if isinstance(trial.field, RotatingField) else ""
             found = f"{trial.duration_s:g} s{cycles} and {more:.3g} s for its clock, which make {rows[most]:.10g} poses"
-            expected = f"at most {_MOST_ROWS} in all trials, one each 2 ms and 60 in a cycle"
+            expected = f"at most {_MOST_ROWS} in all trials, one each 2 ms and 60 in a cycle (trial {show(trial.id)})"
             raise InputError(f"trial[{most}].duration_s", f"{found} of {rows.sum():.10g}", expected)
 
     def nominal(self, trial: int, divisor: int = 1) -> Scenario:

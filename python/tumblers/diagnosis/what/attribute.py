@@ -245,13 +245,12 @@ def _may_be_tolerated(fitter: Fitter, fit: Fit, dispersion: float) -> bool:
     threshold the Gaussian knows nothing.
     """
     hypothesis = fit.hypothesis
-    scenarios = [fitter.comparison.simulator.nominal(i) for i in fitter.trials]
-    known_to = fitter.comparison.dataset.tolerance
-    if is_tolerated(hypothesis.effects(fit.point), scenarios, known_to):
+    lab = fitter.comparison.dataset
+    if is_tolerated(hypothesis.effects(fit.point), lab):
         return True
     ends: list[tuple[float, float]] = []
     for kind in hypothesis.kinds:
-        own = tolerated(kind, scenarios, known_to)
+        own = tolerated(kind, lab)
         if own is None:
             return False
         ends += zip(*(kind.to_fit(values) for values in zip(*own, strict=True)), strict=True)

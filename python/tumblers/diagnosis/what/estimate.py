@@ -100,8 +100,6 @@ def _around(
 
     reach = _ends(rises, {side: _whole_way(hypothesis, fit.point, side[1] * ridges[side[0]]) for side in sides})
     out = {}
-    scenarios = [fitter.comparison.simulator.nominal(i) for i in fitter.trials]
-    known_to = fitter.comparison.dataset.tolerance
     estimates = hypothesis.values(fit.point)
     parameters = [parameter for kind in hypothesis.kinds for parameter in kind.parameters]
     for j, (key, parameter) in enumerate(zip(hypothesis.keys, parameters, strict=True)):
@@ -111,7 +109,7 @@ def _around(
         moved = [hypothesis.values(at(side, reach[side]))[j] - estimates[j] for side in sides if side[0] == j]
         if parameter.turns:
             moved = [(change + _HALF_TURN) % (2.0 * _HALF_TURN) - _HALF_TURN for change in moved]
-        least = SIDE * least_deviation(*key, float(estimates[j]), scenarios, known_to)
+        least = SIDE * least_deviation(*key, float(estimates[j]), fitter.comparison.dataset)
         # What the sensor's tolerance takes was not fitted here, and is known no better than that.
         taken = parameter.beyond if hypothesis.high[j] <= hypothesis.low[j] else None
         if taken is not None:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from math import hypot
 
-from ...dataset import Tolerance
+from ...dataset import Dataset
 from ...effects.base import Effect
-from ...scenario import Scenario
 from ..gap.floor import MOST_OFF
 
 __all__ = ["is_tolerated", "least_deviation", "tolerated"]
@@ -24,9 +23,7 @@ _FORCE = "electrostatic_force"
 _SAME: Mapping[str, tuple[str, ...]] = {"magnetization": ("field_strength", "mass")}
 
 
-def tolerated(
-    kind: type[Effect], scenarios: Sequence[Scenario], known_to: Tolerance
-) -> tuple[tuple[float, float], ...] | None:
+def tolerated(kind: type[Effect], lab: Dataset) -> tuple[tuple[float, float], ...] | None:
     """Return between which values of each parameter an effect says what a nominal number may be off.
 
     Three standard deviations of the number's tolerance either way; None for what no nominal number's being off does,
@@ -36,18 +33,16 @@ def tolerated(
     ----------
     kind
         The effect.
-    scenarios
-        The nominal ones of all trials.
-    known_to
-        How well the lab knows its numbers.
+    lab
+        Whose nominal numbers they are, and how well it knows them.
     """
     if kind.name == _FORCE:
-        most = MOST_OFF * _force_deviation(scenarios, known_to)
+        most = MOST_OFF * _force_deviation(lab)
         return ((-most, most),) if most > 0.0 else None
     numbers = _FACTORS.get(kind.name)
     if numbers is None:
         return None
-    shares = [MOST_OFF * _share(numbers[p.key], known_to) if p.key in numbers else 0.0 for p in kind.parameters]
+    shares = [MOST_OFF * _share(numbers[p.key], lab) if p.key in numbers else 0.0 for p in kind.parameters]
     # A number that is hardly known may be off by more than it can be.
     return tuple(
         (max(p.neutral - share, p.low), min(p.neutral + share, p.high))
@@ -55,27 +50,25 @@ def tolerated(
     )
 
 
-def is_tolerated(effects: Sequence[Effect], scenarios: Sequence[Scenario], known_to: Tolerance) -> bool:
+def is_tolerated(effects: Sequence[Effect], lab: Dataset) -> bool:
     """Return whether each effect keeps a nominal number within three standard deviations of its tolerance.
 
     Parameters
     ----------
     effects
         What is named.
-    scenarios
-        The nominal ones of all trials.
-    known_to
-        How well the lab knows its numbers.
+    lab
+        Whose nominal numbers they are, and how well it knows them.
     """
 
     def within(effect: Effect) -> bool:
-        ends = tolerated(type(effect), scenarios, known_to)
+        ends = tolerated(type(effect), lab)
         return ends is not None and all(a <= v <= b for v, (a, b) in zip(effect.vector(), ends, strict=True))
 
     return bool(effects) and all(map(within, effects))
 
 
-def least_deviation(name: str, key: str, value: float, scenarios: Sequence[Scenario], known_to: Tolerance) -> float:
+def least_deviation(name: str, key: str, value: float, lab: Dataset) -> float:
     """Return the standard deviation that a parameter has at least: a factor's is that of its number.
 
     Parameters
@@ -84,21 +77,19 @@ def least_deviation(name: str, key: str, value: float, scenarios: Sequence[Scena
         Of the effect and of its parameter.
     value
         The parameter.
-    scenarios
-        The nominal ones of all trials.
-    known_to
-        How well the lab knows its numbers.
+    lab
+        Whose nominal numbers they are, and how well it knows them.
     """
     if name == _FORCE:
-        return _force_deviation(scenarios, known_to)
+        return _force_deviation(lab)
     number = _FACTORS.get(name, {}).get(key)
-    return 0.0 if number is None else value * _share(number, known_to)
+    return 0.0 if number is None else value * _share(number, lab)
 
 
-def _share(number: str, known_to: Tolerance) -> float:
+def _share(number: str, lab: Dataset) -> float:
     """Return the standard deviation of a nominal number's factor, with that of others that nobody can tell from it."""
-    return hypot(*(getattr(known_to, n) for n in (number, *_SAME.get(number, ()))))
+    return hypot(*(getattr(lab.tolerance, n) for n in (number, *_SAME.get(number, ()))))
 
 
-def _force_deviation(scenarios: Sequence[Scenario], known_to: Tolerance) -> float:
-    return known_to.electrostatic_force * min(s.substrate.electrostatic_force_N for s in scenarios)
+def _force_deviation(lab: Dataset) -> float:
+    return lab.tolerance.electrostatic_force * lab.substrate.electrostatic_force_N

@@ -9,6 +9,7 @@ from ...effects.parameter import Nuisance
 from ..diagnosis import Diagnosis
 from ..plausible import neutral_values, plausible_ranges, turning_keys
 from ..quantity import percent
+from ..what.tolerated import is_tolerated
 from .phrase import meaning_of, title_of
 
 __all__ = ["cautions"]
@@ -58,6 +59,11 @@ def _of_effects(diagnosis: Diagnosis) -> list[str]:
                     f"{meaning_of(effect.name, key)} is at the end of its plausible range: the true cause may be "
                     "another one that looks similar."
                 )
+        if is_tolerated([one for one in diagnosis.chosen if one.name == effect.name], diagnosis.dataset):
+            said.append(
+                f"{title_of(effect.name)} says no more than that a nominal number is off by what its tolerance allows: "
+                "measure that number first."
+            )
         if effect.name == "camera_calibration":
             said.append("a camera that is off is a gap of the measurement: calibrate it before any physics is added.")
     likeliest = diagnosis.ranking[0]

@@ -126,7 +126,7 @@ def headline(diagnosis: Diagnosis) -> str:
     gap = diagnosis.gap
     floor = f"noise alone gives {_sigmas(gap.noise_floor)}"
     if diagnosis.verdict == "no_gap":
-        left = _sigmas(gap.after_nuisance_only)
+        left = _sigmas(gap.after)
         if gap.noise_floor == 0.0:
             return f"No gap: the nominal model contradicts no outcome (near the border of one, if at all: {left})."
         return f"No gap: the nominal model explains the data to within noise ({left}, {floor})."
@@ -174,11 +174,12 @@ def _of_causes(diagnosis: Diagnosis, phrases: list[Phrase]) -> str:
     else:
         does = f"{'explains' if one else 'explain'} {_explained(gap)}."
     tied = [name for effect in diagnosis.effects for name in effect.confounded_with]
-    likely = min(effect.probability for effect in diagnosis.effects)
-    if tied and likely < _LIKELIER_THAN_NOT:
+    shares = [effect.probability for effect in diagnosis.effects]
+    if tied and min(shares) < _LIKELIER_THAN_NOT:
         alike = "either of two" if len(tied) == 1 else f"any of {1 + len(tied)}"
         which = f"{alike} effects may be the cause" if len(phrases) == 1 else "other effects may be the causes"
-        return f"{which}; if {causes} (probability {percent(likely)}), {amounts}{together} {does}"
+        likely = f"{'probability' if len(shares) == 1 else 'probabilities'} {' and '.join(map(percent, shares))}"
+        return f"{which}; if {causes} ({likely}), {amounts}{together} {does}"
     return f"{causes}: {amounts}{together} {does}"
 
 
