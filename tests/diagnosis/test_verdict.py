@@ -11,6 +11,7 @@ import pytest
 from tumblers.diagnosis.fitting.fitter import Fitter
 from tumblers.diagnosis.fitting.hypothesis import Hypothesis
 from tumblers.diagnosis.gap.comparison import Comparison, Residual
+from tumblers.diagnosis.gap.predictive import is_right
 from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.diagnosis.what.attribute import LAPSE, REFUSED, Attribution, _ranked
 from tumblers.diagnosis.what.contender import Contender, of_fit, of_nominal
@@ -66,6 +67,15 @@ def test_a_likelier_effect_is_named_where_the_nominal_model_leaves_a_gap_against
     attribution = Attribution((best, nominal), 1.0, nominal_is_right)
     found, chosen = judge(comparison, attribution, foretold)  # type: ignore[arg-type]
     assert (found, chosen) == (verdict, nominal if verdict == "no_gap" else best)
+
+
+# Their squares are a mean square: right ones leave less than 1.18, and a nominal model may leave 1.25.
+@pytest.mark.parametrize(("left", "verdict"), [(1.08, "explained"), (1.09, "unexplained")])
+def test_what_is_to_explain_a_gap_leaves_no_more_than_right_effects_do(left: float, verdict: str) -> None:
+    best, nominal = contender("viscous_drag", left, 0.8), contender("", 2.0, 0.1)
+    found, chosen = judge(compared(COUNT), Attribution((best, nominal), 1.0, False), True)  # type: ignore[arg-type]
+    assert (found, chosen) == (verdict, best)
+    assert is_right(compared(COUNT), best.residual)  # type: ignore[arg-type]
 
 
 # The nominal model has 5 % of 88 % where another has e^2.81 = 16.6 times as much.

@@ -36,6 +36,9 @@ def test_the_verdict_is_one_sentence_a_student_understands() -> None:
     closing = headline(made(verdict="unexplained"))
     assert "It would close, to 1.0 σ, if the robot is pulled along +y" in closing
     assert "too few trials show it" in closing
+    # What leaves a little more than right ones do, and what leaves much.
+    nearly = tuple(replace(hypothesis, gap=1.1) for hypothesis in made().ranking)
+    assert "The best partial cause is that" in headline(made(verdict="unexplained", ranking=nearly))
     wide = tuple(replace(hypothesis, gap=3.0) for hypothesis in made().ranking)
     partial = headline(made(verdict="unexplained", ranking=wide))
     assert "The best partial cause is that the robot is pulled along +y" in partial
@@ -178,6 +181,8 @@ def test_cautions_name_what_weakens_a_diagnosis() -> None:
     assert "move the outcome of f01 by more than 5 times its noise" in said
     at_end = EffectEstimate("draft_angle", 0.9, {"draft_deg": Interval(8.0, 7.5, 8.0)}, ())
     assert "end of its plausible range" in dict(points(made(effects=(at_end,))))["caution"]
+    weak = EffectEstimate("draft_angle", 0.9, {"draft_deg": Interval(0.02, 0.01, 0.03)}, ())
+    assert "caution" not in dict(points(made(effects=(weak,)))), "the range begins at the neutral value"
     said = " ".join(text for label, text in points(outcomes_only()) if label == "caution")
     assert "without adhesion" not in said
     assert "a zero of their own" not in said

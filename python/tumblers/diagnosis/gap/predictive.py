@@ -15,12 +15,24 @@ from .comparison import Comparison, Residual
 from .loss import huber, robust_cost
 from .reading import BORDERS, reached
 
-__all__ = ["contradicted", "is_right", "is_wanting", "leaves_a_gap", "mean_square", "mean_squares"]
+__all__ = [
+    "MOST_EXPLAINED",
+    "contradicted",
+    "is_explained",
+    "is_right",
+    "is_wanting",
+    "leaves_a_gap",
+    "mean_square",
+    "mean_squares",
+]
 
 # A right model's mean square over all of many numbers, and in its worst trial.
-_EXPLAINED, _WORST = 1.25, 2.0
-# Of fewer than some 200 numbers noise alone leaves more than that; more than what is allowed instead it leaves once in
-# a hundred datasets.
+_RIGHT, _WORST = 1.25, 2.0
+# What was fitted, against the noise around itself, leaves less where it is right: of datasets with a known truth 98 %
+# did in the catalogue's form, 90 % in another, and about half of those with a cause that the catalogue has not.
+MOST_EXPLAINED = 1.18
+# Of few numbers noise alone leaves more than either; more than what is allowed instead it leaves once in a hundred
+# datasets.
 _SELDOM = 0.01
 # A gap is left where the mean square stays above this against the likeliest noise.
 _WANTING = 1.1
@@ -45,9 +57,12 @@ def is_right(comparison: Comparison, residual: Residual) -> bool:
     """Whether a hypothesis passes the test."""
     if not np.all(mean_squares(residual) <= _worst(np.asarray(comparison.sizes))):
         return False
-    count = max(comparison.count, 1)
-    most = max(_EXPLAINED, float(chi2.isf(_SELDOM, count)) / count)
-    return mean_square(comparison, residual) <= most and not contradicted(comparison, residual).any()
+    return _leaves_at_most(_RIGHT, comparison, residual) and not contradicted(comparison, residual).any()
+
+
+def is_explained(comparison: Comparison, residual: Residual) -> bool:
+    """Whether effects that were fitted pass the test, and leave no more than right ones do."""
+    return is_right(comparison, residual) and _leaves_at_most(MOST_EXPLAINED, comparison, residual)
 
 
 def contradicted(comparison: Comparison, residual: Residual) -> NDArray[np.bool_]:
@@ -87,6 +102,12 @@ def leaves_a_gap(values: NDArray[np.float64]) -> bool:
         Whitened, shape (n,), n ≥ 1.
     """
     return robust_cost(values) / len(values) > _WANTING
+
+
+def _leaves_at_most(many: float, comparison: Comparison, residual: Residual) -> bool:
+    """Return whether the mean square is no more than is allowed of many numbers, or than noise seldom gives."""
+    count = max(comparison.count, 1)
+    return mean_square(comparison, residual) <= max(many, float(chi2.isf(_SELDOM, count)) / count)
 
 
 def _worst(count: NDArray[np.int_]) -> NDArray[np.float64]:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ..gap.comparison import Comparison
-from ..gap.predictive import is_right
+from ..gap.predictive import is_explained, is_right
 from ..result import Verdict
 from .attribute import Attribution
 from .contender import Contender
@@ -45,7 +45,7 @@ def judge(comparison: Comparison, attribution: Attribution, foretold: bool) -> t
         return "no_gap", nominal
     if not best.names:
         return "unexplained", best
-    return ("explained" if is_right(comparison, best.residual) and foretold else "unexplained"), best
+    return ("explained" if is_explained(comparison, best.residual) and foretold else "unexplained"), best
 
 
 def refused(

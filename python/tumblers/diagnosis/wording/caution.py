@@ -51,10 +51,10 @@ def _of_effects(diagnosis: Diagnosis) -> list[str]:
                 continue
             low, high = ranges.get(key, (-float("inf"), float("inf")))
             margin = _AT_END * (high - low)
-            if isfinite(margin) and not low + margin <= interval.estimate <= high - margin:
-                # A range can end at the neutral value, where nothing is wrong with it.
-                if interval.low <= neutral[key] <= interval.high:
-                    continue
+            ends = ((low, interval.estimate - low), (high, high - interval.estimate))
+            # A range can end at the neutral value: what is near that is weak, and not at an end.
+            at_end = isfinite(margin) and any(off < margin and end != neutral[key] for end, off in ends)
+            if at_end and not interval.low <= neutral[key] <= interval.high:
                 said.append(
                     f"{meaning_of(effect.name, key)} is at the end of its plausible range: the true cause may be "
                     "another one that looks similar."

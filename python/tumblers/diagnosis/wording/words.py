@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ...effects.catalogue import CATALOGUE
 from ...field import RotatingField
 from ..diagnosis import Diagnosis
+from ..gap.predictive import MOST_EXPLAINED
 from ..how_far.followed import LEAST_FOLLOWED
 from ..quantity import handy_unit, percent, rounded, sigmas, with_interval, with_sigma
 from ..result import EffectEstimate, Gap, NextTrial, Region
@@ -147,7 +148,7 @@ def headline(diagnosis: Diagnosis) -> str:
             f"Unexplained: {left}. It would be within what the computed motion is uncertain by if {partial}; but the "
             f"simulated robot itself comes {nearer} to the measured one."
         )
-    if fitted < gap.noise_floor + _CLOSED:
+    if fitted < gap.noise_floor + _CLOSED and fitted**2 <= MOST_EXPLAINED:
         return (
             f"Unexplained: {left}. It would close, to {_sigmas(fitted)}, if {partial}; but too few trials show it to "
             "hold that against another."
