@@ -21,7 +21,8 @@ from tumblers.diagnosis.gap.reading import Reader
 from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.diagnosis.how_far.followed import LEAST_FOLLOWED, _left, followed
 from tumblers.diagnosis.what.own_noise import settled_at
-from tumblers.diagnosis.wording.words import headline, points
+from tumblers.diagnosis.wording.headline import headline
+from tumblers.diagnosis.wording.words import points
 from tumblers.effects.magnetization_strength import MagnetizationStrength
 
 from .example import made

@@ -18,8 +18,8 @@ from tumblers.diagnosis.report.report import report_html
 from tumblers.diagnosis.result import (
     Region,
 )
+from tumblers.diagnosis.wording.headline import headline
 from tumblers.diagnosis.wording.phrase import title_of
-from tumblers.diagnosis.wording.words import headline
 from tumblers.effects import CATALOGUE
 
 from .example import lab, made, no_gap, outcomes_only, small, wrench

@@ -18,7 +18,7 @@ from tumblers.diagnosis.quantity import sigmas
 from tumblers.diagnosis.what.attribute import _may_be_tolerated, _with_tolerated
 from tumblers.diagnosis.what.contender import of_fit, of_nominal
 from tumblers.diagnosis.what.tolerated import _FACTORS, is_tolerated, tolerated
-from tumblers.diagnosis.wording.words import headline
+from tumblers.diagnosis.wording.headline import headline
 from tumblers.effects import CATALOGUE
 from tumblers.effects.base import Effect
 from tumblers.effects.electrostatic_force import ElectrostaticForce

@@ -16,8 +16,9 @@ from tumblers.diagnosis.quantity import percent, rounded, with_interval
 from tumblers.diagnosis.report.where import where_part
 from tumblers.diagnosis.result import EffectEstimate, Interval, RankedHypothesis, Region
 from tumblers.diagnosis.wording.condition import condition_of_table
+from tumblers.diagnosis.wording.headline import headline
 from tumblers.diagnosis.wording.phrase import phrase_of, title_of
-from tumblers.diagnosis.wording.words import NO_TRIAL, headline, points, summary
+from tumblers.diagnosis.wording.words import NO_TRIAL, points, summary
 from tumblers.effects.catalogue import CATALOGUE
 
 from .example import FREQUENCIES, NAN, lab, made, no_gap, outcomes_only

@@ -16,8 +16,9 @@ from ..plots.ranking import plot_ranking
 from ..plots.svg import WIDTH_IN, svg_bytes
 from ..quantity import handy_unit, percent, rounded, sigmas, with_interval
 from ..wording.condition import condition_of
+from ..wording.headline import headline
 from ..wording.phrase import meaning_of, title_of, unit_of
-from ..wording.words import headline, points, set_words
+from ..wording.words import points, set_words
 from .trials import floor_part, next_part, overlay_part
 from .where import where_part, wrench_part
 

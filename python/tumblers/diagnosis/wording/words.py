@@ -10,20 +10,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...effects.catalogue import CATALOGUE
-from ...field import RotatingField
 from ..diagnosis import Diagnosis
-from ..gap.predictive import MOST_EXPLAINED
-from ..how_far.followed import LEAST_FOLLOWED
-from ..quantity import handy_unit, percent, rounded, sigmas, with_interval, with_sigma
-from ..result import EffectEstimate, Gap, NextTrial, Region
+from ..quantity import handy_unit, percent, rounded, with_interval, with_sigma
+from ..result import EffectEstimate, NextTrial, Region
 from ..where.wrench_maps import SIGNIFICANT
 from .caution import cautions
 from .condition import condition_of, condition_of_table
-from .phrase import Phrase, meaning_of, phrase_of, title_of, unit_of
+from .headline import CLOSED, ONE_PERCENT, gap_words, headline, only_uncertain
+from .phrase import meaning_of, title_of, unit_of
 
 __all__ = [
     "NO_TRIAL",
-    "headline",
     "observation_words",
     "points",
     "reason_words",
@@ -89,19 +86,6 @@ _EVENTS = {
     "runs_away": "runs away, too fast for a speed to be noted,",
 }
 
-# Below this share of the gap an effect is not foretold by trials that were fitted without it.
-_FORETOLD = 0.05
-# A gap that is no more than so much above what noise gives is closed, sigmas.
-_CLOSED = 0.2
-# Where less than this share of the gap is left once the sensor's nuisances are fitted, that is what effects are about.
-_SLIPS = 0.1
-# And where it is less than this, that they are about that alone is said.
-_MOSTLY = 0.9
-# What is tied and no likelier than this is not told as if it were known.
-_LIKELIER_THAN_NOT = 0.5
-# The interval of a shrink that ends below this would read from 1 to 1 %.
-_ONE_PERCENT = 0.015
-
 
 def summary(diagnosis: Diagnosis) -> str:
     """Return a diagnosis in plain words for a terminal: the verdict, where, what, how far, ties, next, cautions.
@@ -120,68 +104,6 @@ def summary(diagnosis: Diagnosis) -> str:
             text, _WIDTH, initial_indent=start, subsequent_indent=" " * len(start), break_on_hyphens=False
         )
     return "\n".join(lines)
-
-
-def headline(diagnosis: Diagnosis) -> str:
-    """Return the verdict in one sentence."""
-    gap = diagnosis.gap
-    floor = f"noise alone gives {_sigmas(gap.noise_floor)}"
-    if diagnosis.verdict == "no_gap":
-        left = _sigmas(gap.after)
-        if gap.noise_floor == 0.0:
-            return f"No gap: the nominal model contradicts no outcome (near the border of one, if at all: {left})."
-        return f"No gap: the nominal model explains the data to within noise ({left}, {floor})."
-    phrases = [phrase_of(effect, diagnosis.dataset) for effect in diagnosis.effects]
-    if diagnosis.verdict == "explained" and phrases:
-        return _capital(_of_causes(diagnosis, phrases))
-    tried = sum(len(hypothesis.effects) == 1 for hypothesis in diagnosis.ranking)
-    none = (
-        f"none of the {tried} effects that were tried closes it" if tried > 1 else "no effect that was tried closes it"
-    )
-    left = f"the gap is {_sigmas(gap.before)} ({floor})"
-    if not phrases:
-        return f"Unexplained: {left}, and {none}."
-    partial = " and ".join(f"{phrase.cause}, {phrase.amount.rstrip(',')}" for phrase in phrases)
-    fitted = _fitted(diagnosis)
-    if nearer := _only_uncertain(diagnosis):
-        return (
-            f"Unexplained: {left}. It would be within what the computed motion is uncertain by if {partial}; but the "
-            f"simulated robot itself comes {nearer} to the measured one."
-        )
-    if fitted < gap.noise_floor + _CLOSED and fitted**2 <= MOST_EXPLAINED:
-        return (
-            f"Unexplained: {left}. It would close, to {_sigmas(fitted)}, if {partial}; but too few trials show it to "
-            "hold that against another."
-        )
-    return (
-        f"Unexplained: {left}, and {none}. The best partial cause is that {partial}; "
-        f"with it, {_sigmas(gap.after)} are left."
-    )
-
-
-def _of_causes(diagnosis: Diagnosis, phrases: list[Phrase]) -> str:
-    """Return what explains the gap, as what is known, or where others do as well as one of those that may."""
-    gap = diagnosis.gap
-    causes = " and ".join(phrase.cause for phrase in phrases) + _scope(diagnosis)
-    amounts = " and ".join(phrase.amount.rstrip(",") if len(phrases) > 1 else phrase.amount for phrase in phrases)
-    together = ", together," if len(phrases) > 1 else ""
-    one = len(phrases) == 1 and not phrases[0].plural
-    if min(gap.shrink.estimate, _own(gap)) < _FORETOLD:
-        does = (
-            f"{'closes' if one else 'close'} the gap, from {_sigmas(gap.after_nuisance_only)} to "
-            f"{_sigmas(_fitted(diagnosis))} where it is fitted; the trials that show it are too few for the "
-            "others to foretell it."
-        )
-    else:
-        does = f"{'explains' if one else 'explain'} {_explained(gap)}."
-    tied = [name for effect in diagnosis.effects for name in effect.confounded_with]
-    shares = [effect.probability for effect in diagnosis.effects]
-    if tied and min(shares) < _LIKELIER_THAN_NOT:
-        alike = "either of two" if len(tied) == 1 else f"any of {1 + len(tied)}"
-        which = f"{alike} effects may be the cause" if len(phrases) == 1 else "other effects may be the causes"
-        likely = f"{'probability' if len(shares) == 1 else 'probabilities'} {' and '.join(map(percent, shares))}"
-        return f"{which}; if {causes} ({likely}), {amounts}{together} {does}"
-    return f"{causes}: {amounts}{together} {does}"
 
 
 def _verdict(diagnosis: Diagnosis) -> str:
@@ -258,64 +180,6 @@ def observation_words(kind: str, mean: float, sigma: float) -> str:
         return f"{_EVENTS[kind]} with {percent(mean)} probability"
     name, unit = _OBSERVATIONS.get(kind, (kind.replace("_", " "), ""))
     return f"{name} {with_sigma(mean, sigma, unit)}"
-
-
-def _sigmas(gap: float) -> str:
-    return f"{sigmas(gap)} σ" if isfinite(gap) else "not measured"
-
-
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]
-
-
-def _explained(gap: Gap) -> str:
-    if not isfinite(gap.shrink.estimate):
-        return "the gap, though no trial was left to check it on"
-    left, whole = gap.after_nuisance_only - gap.noise_floor, gap.before - gap.noise_floor
-    if left < _MOSTLY * whole:
-        share = "" if left < _SLIPS * whole else f"{percent(_own(gap))} of "
-        return (
-            f"{share}what the sensor's own slips leave of the gap on trials not fitted, "
-            f"{_sigmas(gap.after_nuisance_only)} that become {_sigmas(gap.after)}"
-        )
-    return f"{percent(gap.shrink.estimate)} of the gap on trials not fitted"
-
-
-def _own(gap: Gap) -> float:
-    """Return what the effects shrink of the gap that the refitted sensor leaves, 1 where it leaves none."""
-    left = gap.after_nuisance_only - gap.noise_floor
-    return 1.0 - max(gap.after - gap.noise_floor, 0.0) / left if left > 0.0 else 1.0
-
-
-def _only_uncertain(diagnosis: Diagnosis) -> str:
-    """Return how much nearer the simulated robot comes where effects close the gap without that, else nothing."""
-    gap = diagnosis.gap
-    if gap.followed is None or gap.followed >= LEAST_FOLLOWED or _fitted(diagnosis) >= gap.noise_floor + _CLOSED:
-        return ""
-    return f"only {percent(gap.followed)} nearer" if gap.followed >= _ONE_PERCENT else "no nearer"
-
-
-def _fitted(diagnosis: Diagnosis) -> float:
-    """Return the gap that the chosen effects leave where they are fitted."""
-    names = {effect.name for effect in diagnosis.effects}
-    return next(ranked.gap for ranked in diagnosis.ranking if set(ranked.effects) == names)
-
-
-def _scope(diagnosis: Diagnosis) -> str:
-    """Return at which of the dataset's frequencies the gap shows, where not at all of them."""
-    regions = [region for region in diagnosis.where if region.axis == "frequency_Hz"]
-    used = sorted({t.field.frequency_Hz for t in diagnosis.dataset.trials if isinstance(t.field, RotatingField)})
-    camera = [effect.name for effect in diagnosis.effects] == ["camera_calibration"]
-    if not regions or len(used) < 2 or camera or regions[0].low is None or regions[0].high is None:
-        return ""
-    low, high = regions[0].low, regions[0].high
-    if low <= used[0] and high >= used[-1]:
-        return ""
-    if high >= used[-1]:
-        return f", seen from {low:.3g} Hz up"
-    if low <= used[0]:
-        return f", seen up to {high:.3g} Hz"
-    return f", seen at {low:.3g} Hz" if low == high else f", seen from {low:.3g} to {high:.3g} Hz"
 
 
 def _where(diagnosis: Diagnosis) -> str:
@@ -401,27 +265,27 @@ def _how_far(diagnosis: Diagnosis) -> str:
         held_out = (
             f"on {count} trials, each left out of a fit once: " if count > 1 else "on one trial, left out of the fit: "
         )
-    refitted = f"with only the sensor's nuisances refitted: {_sigmas(gap.after_nuisance_only)}"
-    if count and gap.after_nuisance_only > gap.before + _CLOSED:
+    refitted = f"with only the sensor's nuisances refitted: {gap_words(gap.after_nuisance_only)}"
+    if count and gap.after_nuisance_only > gap.before + CLOSED:
         refitted += ", which is more, for it is foretold from the other trials"
     if diagnosis.verdict == "no_gap":
-        stated = f"with a perfect sensor and the numbers as stated: {_sigmas(gap.before)}; {refitted}"
-        return f"{held_out}{_sigmas(gap.after)} ({stated}; noise alone: {_sigmas(gap.noise_floor)})."
+        stated = f"with a perfect sensor and the numbers as stated: {gap_words(gap.before)}; {refitted}"
+        return f"{held_out}{gap_words(gap.after)} ({stated}; noise alone: {gap_words(gap.noise_floor)})."
     shrink = gap.shrink
     if not count:
         held_out = "in the fit itself, for no trial could be left out: "
     if count and isfinite(shrink.estimate):
         share = f"; the gap shrinks by {percent(shrink.estimate)}"
         # An interval of what is next to nothing would only repeat it.
-        if isfinite(shrink.low) and isfinite(shrink.high) and shrink.high >= _ONE_PERCENT:
+        if isfinite(shrink.low) and isfinite(shrink.high) and shrink.high >= ONE_PERCENT:
             share += f" (90 % interval {100.0 * shrink.low:.0f} to {percent(shrink.high)})"
     else:
         share = ""
     said = (
-        f"{held_out}from {_sigmas(gap.before)} to {_sigmas(gap.after)} ({refitted}; "
-        f"noise alone: {_sigmas(gap.noise_floor)}){share}."
+        f"{held_out}from {gap_words(gap.before)} to {gap_words(gap.after)} ({refitted}; "
+        f"noise alone: {gap_words(gap.noise_floor)}){share}."
     )
-    if nearer := _only_uncertain(diagnosis):
+    if nearer := only_uncertain(diagnosis):
         said += " With the effects the computed motion is uncertain by as much: by the sensor's noise alone the"
         said += f" simulated robot comes {nearer} to the measured one."
     return said
