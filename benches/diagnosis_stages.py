@@ -1,11 +1,10 @@
-"""Which stages of a diagnosis ask for its runs: ``python benches/diagnosis_stages.py DATASET [--jobs N]``.
+"""Which stages of a diagnosis ask for its runs: ``python benches/diagnosis_stages.py FOLDER [--threads N]``.
 
 A run belongs to the innermost function that is above fits and gaps: for its file see ``docs/how_it_decides.md``.
 """
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections import defaultdict
 from collections.abc import Sequence
@@ -34,12 +33,8 @@ def stage() -> str:
     return "before all stages"
 
 
-def main() -> int:
+def main(folder: FilePath, threads: int = 1) -> None:
     """Diagnose a dataset, and print its stages by what their runs take."""
-    parser = argparse.ArgumentParser(description="Say which stages of a diagnosis ask for its runs.")
-    parser.add_argument("dataset", type=FilePath)
-    parser.add_argument("--jobs", type=int, default=1)
-    asked = parser.parse_args()
     spent: dict[str, list[float]] = defaultdict(lambda: [0.0, 0.0, 0.0])
     simulate = Simulator.run
 
@@ -53,13 +48,12 @@ def main() -> int:
 
     Simulator.run = watched  # type: ignore[method-assign]
     wall, processor = perf_counter(), process_time()
-    verdict = diagnose(dataset.load(asked.dataset), jobs=asked.jobs, progress=True).verdict
+    verdict = diagnose(dataset.load(folder), jobs=threads, progress=True).verdict
     wall, processor = perf_counter() - wall, process_time() - processor
     typer.echo(f"{verdict}: {wall:.1f} s, {processor:.1f} s of the processors; in runs:")
     for name, (runs, seconds, of_processors) in sorted(spent.items(), key=lambda one: -one[1][1]):
         typer.echo(f"{seconds:8.1f} s {of_processors:8.1f} s {runs:8.0f} runs  {name}")
-    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    typer.run(main)
