@@ -4,6 +4,7 @@ import json
 import os
 import sys
 from contextlib import nullcontext
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 
@@ -20,8 +21,10 @@ from .dataset_folder import one_outcome
 THREADS = 2
 
 
-def write(folder: Path) -> Path:
-    one_outcome().save(folder)
+def write(folder: Path, trials: int = 1) -> Path:
+    dataset = one_outcome()
+    named = (replace(dataset.trials[0], id=f"{dataset.trials[0].id}{n}") for n in range(trials))
+    replace(dataset, trials=tuple(named)).save(folder)
     return folder
 
 
@@ -76,9 +79,23 @@ def test_the_slowest_are_diagnosed_again_for_the_same_answer(
     assert (again["same"], again["threads"]) == (False, THREADS)
     assert 1 <= again["cores"] <= (os.cpu_count() or 1)
     assert again["processor_s"] > 0.0
+    assert again["trials"] == 1
     # Another diagnosis has not been repeated.
     _diagnose(tmp_path / "dataset-001", THREADS)
     assert not (tmp_path / "dataset-001" / "repeat.json").exists()
+
+
+def test_those_with_more_trials_are_diagnosed_again_beside_those_whose_time_has_to_hold(
+    diagnose: list[object], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for number, trials in enumerate((12, 13, 14)):
+        folder = write(tmp_path / f"dataset-{number:03d}", trials)
+        _diagnose(folder, THREADS)
+        record = json.loads((folder / "run.json").read_text())
+        (folder / "run.json").write_text(json.dumps({**record, "processor_s": 1.0 + number}))
+    pool = SimpleNamespace(submit=lambda call, *of: SimpleNamespace(result=lambda: call(*of)))
+    monkeypatch.setattr("tumblers.blind.repeat.workers", lambda _jobs: nullcontext(pool))
+    assert list(repeat(tmp_path, count=1, threads=THREADS)) == ["dataset-000", "dataset-002"]
 
 
 def test_another_version_or_a_failure_is_not_done(diagnose: list[object], tmp_path: Path) -> None:

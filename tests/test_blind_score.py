@@ -19,6 +19,8 @@ from tumblers.blind.share import Share
 from tumblers.blind.ties import Tie
 from tumblers.dataset import Tolerance
 
+LONGEST = "longest of the slowest of up to 12 trials again, alone"
+
 
 def answer(kind: str, *effects: tuple[str, str, dict[str, float]], sigma: float = 5.0, **changes: Any) -> Answer:
     causes = tuple(TrueCause(name=n, form=f, form_seed=None, parameters=p, strength_sigma=sigma) for n, f, p in effects)
@@ -149,22 +151,42 @@ def test_what_was_diagnosed_again_counts_for_time_and_sameness() -> None:
         replace(
             record(number, answer("none"), said("no_gap", shrink=None)),
             repeated=Repeated(
-                seconds=50.0 * (number + 1), processor_s=processor_s, threads=4, cores=2, same=number > 0
+                seconds=50.0 * (number + 1),
+                processor_s=processor_s,
+                threads=4,
+                cores=2,
+                same=number > 0,
+                trials=trials,
             ),
         )
-        for number, processor_s in enumerate((90.0, 110.0, 280.0))
+        for number, (processor_s, trials) in enumerate(((90.0, None), (110.0, 6), (280.0, 12)))
     ]
     scores = score_records([*again, record(3, answer("none"), said("no_gap", shrink=None))], 7, lambda _: Tie(0.0))
     # 100 s on the wall and 110 s of the processors: 90 s on one core. 150 s and 280 s: 20 s, and 260 s on all.
-    assert value(scores, "longest of the slowest again, alone, on 4 cores by Amdahl's law, s") == pytest.approx(95.0)
+    assert value(scores, f"{LONGEST}, on 4 cores by Amdahl's law, s") == pytest.approx(95.0)
     assert value(scores, "diagnosed again") == pytest.approx(2 / 3)
     derived = "at most 150 s, 280 s of the processors. On 4 cores that is at most 95 s by Amdahl's law, if what runs"
     assert f"on 4 threads (cores: 2): {derived}" in page_of(scores)
 
 
+def test_the_time_of_more_trials_than_it_has_to_hold_for_is_told_apart() -> None:
+    again = Repeated(seconds=150.0, processor_s=None, threads=4, cores=4, same=True, trials=12)
+    longer = replace(again, seconds=250.0, trials=13, same=False)
+    each = [
+        replace(record(number, answer("none"), said("no_gap", shrink=None)), repeated=repeated)
+        for number, repeated in enumerate((again, longer))
+    ]
+    scores = score_records(each, 7, lambda _: Tie(0.0))
+    assert value(scores, f"{LONGEST}, on 4 cores, s") == 150.0
+    assert value(scores, "diagnosed again") == 0.5
+    page = page_of(scores)
+    assert "The slowest of up to 12 trials again, one after another on 4 threads (cores: 4): at most 150 s." in page
+    assert "The slowest of more again, one after another on 4 threads (cores: 4): at most 250 s." in page
+
+
 @pytest.mark.parametrize(
     ("cores", "processor_s", "words", "expected"),
-    [(4, 280.0, "alone, on 4 cores, s", 150.0), (2, None, "alone, s", 150.0), (None, 280.0, "alone, s", 150.0)],
+    [(4, 280.0, ", on 4 cores, s", 150.0), (2, None, ", s", 150.0), (None, 280.0, ", s", 150.0)],
 )
 def test_a_time_that_is_not_derived_is_said_as_it_was_measured(
     cores: int | None, processor_s: float | None, words: str, expected: float
@@ -172,7 +194,7 @@ def test_a_time_that_is_not_derived_is_said_as_it_was_measured(
     again = Repeated(seconds=150.0, processor_s=processor_s, threads=4, cores=cores, same=True)
     one = replace(record(0, answer("none"), said("no_gap", shrink=None)), repeated=again)
     scores = score_records([one], 7, lambda _: Tie(0.0))
-    assert value(scores, f"longest of the slowest again, {words}") == expected
+    assert value(scores, f"{LONGEST}{words}") == expected
     assert "at most 150 s." in page_of(scores)
 
 

@@ -11,6 +11,7 @@ from .draw import CLEAR_SIGMA, LEAST_BESIDE_SIGMA, QUIET_SIGMA, QUIET_TRIAL_SIGM
 from .jitter import DIMENSIONS, NUMBERS
 from .layout import STEADY_SIGMA
 from .overlap import halves
+from .repeated import TRIALS, Repeated
 from .score import CORES, TIE_SIGMA, Criterion, Scores
 from .share import Share
 from .ties import SIZES
@@ -158,18 +159,25 @@ def _share(value: float) -> str:
 
 
 def _repeated(scores: Scores) -> str:
-    if not scores.repeated:
-        return ""
-    longest = max(scores.repeated, key=lambda again: again.seconds)
+    said = ""
+    for timed, which in ((True, f"of up to {TRIALS} trials"), (False, "of more")):
+        again = [each for each in scores.repeated if each.is_timed == timed]
+        if again:
+            said += f" The slowest {which} again, {_time_of(again)}."
+    return said
+
+
+def _time_of(repeated: Sequence[Repeated]) -> str:
+    longest = max(repeated, key=lambda again: again.seconds)
     cores = "" if longest.cores is None else f" (cores: {longest.cores})"
-    said = f" The slowest again, one after another on {longest.threads} threads{cores}: at most {longest.seconds:.0f} s"
-    there = [seconds for again in scores.repeated if (seconds := again.seconds_on(CORES)) is not None]
+    said = f"one after another on {longest.threads} threads{cores}: at most {longest.seconds:.0f} s"
+    there = [seconds for again in repeated if (seconds := again.seconds_on(CORES)) is not None]
     if longest.processor_s is not None and longest.seconds_on(CORES) not in (None, longest.seconds):
         said += (
             f", {longest.processor_s:.0f} s of the processors. On {CORES} cores that is at most {max(there):.0f} s by "
             "Amdahl's law, if what runs on all of these runs on all of those as well; it was not measured there"
         )
-    return f"{said}."
+    return said
 
 
 def _clear(scores: Scores) -> str:

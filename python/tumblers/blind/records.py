@@ -142,6 +142,7 @@ def _repeated(table: Mapping[str, Any] | None) -> Repeated | None:
         threads=table["threads"],
         cores=table["cores"],
         same=table["same"],
+        trials=table.get("trials"),
     )
 
 

@@ -10,9 +10,11 @@ from time import perf_counter, process_time
 
 from ..atomic import write_files
 from ..check import thread_count
+from ..dataset import load
 from ..errors import InputError
 from ..progress import OnProgress, native_call
 from ..version import __version__
+from .repeated import TRIALS
 from .run import DIAGNOSIS, RECORD, REPEAT
 from .workers import workers
 
@@ -26,14 +28,15 @@ def repeat(
 ) -> dict[str, bool]:
     """Diagnose the datasets that took longest again, nothing beside them, and write ``repeat.json`` to each.
 
-    Longest is by the processors' time, or on the wall where `run` has not noted that.
+    Longest is by the processors' time, or on the wall where `run` has not noted that, of those with up to 12 trials,
+    whose time has to hold; and of those with more.
 
     Parameters
     ----------
     directory
         The folder in which `run` has diagnosed.
     count
-        How many of them.
+        How many of either.
     threads
         Threads of a diagnosis.
     progress
@@ -60,7 +63,9 @@ def repeat(
     took = {folder: seconds for folder, seconds in found.items() if seconds is not None}
     if not took:
         raise InputError(None, "no diagnoses of this version", "a folder of `tumblers blind run`", directory)
-    slowest = sorted(took, key=lambda folder: (-took[folder], folder.name))[:count]
+    longest_first = sorted(took, key=lambda folder: (-took[folder], folder.name))
+    timed = [folder for folder in longest_first if _trials(folder) <= TRIALS]
+    slowest = timed[:count] + [folder for folder in longest_first if folder not in timed][:count]
     same = {}
     with native_call("diagnoses", len(slowest), progress) as on_progress, workers(1) as pool:
         for number, folder in enumerate(slowest, start=1):
@@ -82,6 +87,10 @@ def _seconds(path: Path) -> float | None:
     return float(record.get("processor_s", record["seconds"]))
 
 
+def _trials(folder: Path) -> int:
+    return len(load(folder).trials)
+
+
 def _cores() -> int | None:
     """Return how many cores this process may use, where that can be known: threads say little without."""
     usable = getattr(os, "sched_getaffinity", None)
@@ -89,11 +98,11 @@ def _cores() -> int | None:
 
 
 def _again(folder: Path, threads: int) -> bool:
-    from ..dataset import load
     from ..diagnosis import diagnose
 
     start, worked = perf_counter(), process_time()
-    text = diagnose(load(folder), jobs=threads).to_json().encode()
+    dataset = load(folder)
+    text = diagnose(dataset, jobs=threads).to_json().encode()
     same = text == (folder / DIAGNOSIS).read_bytes()
     record = {
         "format": REPEAT_FORMAT,
@@ -103,6 +112,7 @@ def _again(folder: Path, threads: int) -> bool:
         "threads": threads,
         "cores": _cores(),
         "same": same,
+        "trials": len(dataset.trials),
     }
     write_files({folder / REPEAT: (json.dumps(record) + "\n").encode()})
     return same

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["Repeated"]
+__all__ = ["TRIALS", "Repeated"]
+
+# Of a dataset whose diagnosis has to be made within a time: more may take longer.
+TRIALS = 12
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -21,6 +24,8 @@ class Repeated:
         Its threads, and how many cores it could use; None where nobody can say.
     same
         Whether it is the same, byte for byte.
+    trials
+        How many the dataset has; None where that was not noted.
     """
 
     seconds: float
@@ -28,6 +33,12 @@ class Repeated:
     threads: int
     cores: int | None
     same: bool
+    trials: int | None = None
+
+    @property
+    def is_timed(self) -> bool:
+        """Whether its time has to hold: the dataset has no more than `TRIALS` trials, as far as was noted."""
+        return self.trials is None or self.trials <= TRIALS
 
     def seconds_on(self, cores: int) -> float | None:
         """Return how long it takes on so many cores, s; None where nobody can say.

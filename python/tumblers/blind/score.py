@@ -18,7 +18,7 @@ from .jitter import Jitter
 from .law import EffectLaw
 from .overlap import CLEAR, all_trials, halves, overlap, pointed_out, regions
 from .records import Record, read_records
-from .repeated import Repeated
+from .repeated import TRIALS, Repeated
 from .share import Share, share_of, together
 from .ties import Tie, difference_sigma, effect_of, nearest_sigma
 
@@ -327,16 +327,20 @@ def _tie_sigma(folder: Path, record: Record) -> Tie:
 
 
 def _time(repeated: Sequence[Repeated]) -> Criterion:
-    """Return what has to hold of the slowest: on `CORES` where that is known of all, else where they ran."""
-    there = [seconds for again in repeated if (seconds := again.seconds_on(CORES)) is not None]
-    words, took = "longest of the slowest again, alone", there
-    if len(there) < len(repeated):
-        took = [again.seconds for again in repeated]
-    elif any(again.seconds not in there for again in repeated):
+    """Return what has to hold of the slowest of up to `TRIALS` trials.
+
+    On `CORES` where that is known of all, else where they ran.
+    """
+    timed = [again for again in repeated if again.is_timed]
+    there = [seconds for again in timed if (seconds := again.seconds_on(CORES)) is not None]
+    words, took = f"longest of the slowest of up to {TRIALS} trials again, alone", there
+    if len(there) < len(timed):
+        took = [again.seconds for again in timed]
+    elif any(again.seconds not in there for again in timed):
         words += f", on {CORES} cores by Amdahl's law"
     elif there:
         words += f", on {CORES} cores"
-    return Criterion(words=f"{words}, s", value=max(took, default=None), low=0.0, high=_SLOWEST_S, count=len(repeated))
+    return Criterion(words=f"{words}, s", value=max(took, default=None), low=0.0, high=_SLOWEST_S, count=len(timed))
 
 
 def _confusion(records: Sequence[Record]) -> dict[str, dict[str, int]]:
