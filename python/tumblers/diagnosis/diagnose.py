@@ -51,8 +51,8 @@ Floats = NDArray[np.float64]
 
 # Hypotheses whose gap is measured on trials left out, and how probable they must be (the best is always measured).
 _MEASURED, _PROBABLE = 3, 0.02
-# Hypotheses that a next trial is sought for, and draws of each.
-_RIVALS, _SAMPLES = 6, 24
+# Hypotheses that a next trial is sought for, of what does not explain the gap fewer, and draws of each.
+_RIVALS, _PARTIAL_RIVALS, _SAMPLES = 6, 3, 24
 # What a rival weighs at least in the information of a trial: tied by likelihood alone, it may be next to improbable.
 _LEAST_WEIGHT = 0.02
 # ln of the odds against an effect that is ruled out.
@@ -190,7 +190,8 @@ class _Conclusion:
         # Not by evidence: the nominal model has the probability of what counts as it, too.
         by_probability = sorted(attribution.contenders, key=lambda contender: -contender.probability)
         ranking = tuple(self._ranked(contender) for contender in by_probability)
-        floors, proposed = self._floors(chosen), self._next(chosen, tied, tell)
+        floors = self._floors(chosen)
+        proposed = self._next(chosen, tied, _PARTIAL_RIVALS if verdict == "unexplained" else _RIVALS, tell)
         tell("where the gap lies", 0, 2)
         regions, maps = self._where(chosen, verdict)
         # What is missing is seen against the noise around the nominal model, not around other hypotheses.
@@ -272,7 +273,9 @@ class _Conclusion:
             shrink=shrunk,
         )
 
-    def _next(self, chosen: Contender, tied: dict[str, tuple[str, ...]], tell: OnPhase) -> tuple[NextTrial, ...]:
+    def _next(
+        self, chosen: Contender, tied: dict[str, tuple[str, ...]], most: int, tell: OnPhase
+    ) -> tuple[NextTrial, ...]:
         if not any(tied.values()):
             return ()
         rivals = [chosen]
@@ -282,7 +285,7 @@ class _Conclusion:
                 rival = any(set(contender.names) == swapped | {other} for other in others)
                 if rival and contender not in rivals:
                     rivals.append(contender)
-        rivals = rivals[:_RIVALS]
+        rivals = rivals[:most]
         hypotheses = []
         for k, contender in enumerate(rivals):
             tell("the next trial", k, len(rivals) + 1)
