@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tumblers import EffectError, InputError, dataset
+from tumblers import EffectError, InputError
 from tumblers.dataset import Dataset, LabTrial, Outcome, Track
-from tumblers.diagnosis import Diagnosis, diagnose
+from tumblers.diagnosis import diagnose
 from tumblers.diagnosis.gap.comparison import Comparison
 from tumblers.diagnosis.gap.predictive import _worst, is_right
 from tumblers.diagnosis.gap.reading import reached
@@ -29,7 +29,6 @@ from tumblers.presets import drive
 from .lab import OFF, PLANS, measure, plan, without
 
 CONSIDERED = ("size_error", "friction_coefficient", "viscous_drag")
-EXAMPLE = Path(__file__).parents[2] / "examples" / "aluminium_30deg"
 DRAG = get("viscous_drag").from_vector((0.02,))
 
 WEAK_AMPLIFIER = '''
@@ -84,37 +83,6 @@ def test_effects_in_another_order_are_the_same_answer() -> None:
     data = measure(plan(PLANS[1:2]), (DRAG,))
     one, other = (diagnose(data, effects=names, jobs=2) for names in (CONSIDERED, CONSIDERED[::-1]))
     assert [entry.log_evidence for entry in one.ranking] == [entry.log_evidence for entry in other.ranking]
-
-
-def check_the_papers_gap(diagnosis: Diagnosis) -> None:
-    assert diagnosis.verdict == "explained"
-    pair = {"friction_coefficient", "line_contact_adhesion"}
-    assert "Every measured number counts for itself in probabilities and intervals." in diagnosis.assumptions
-    (first,) = diagnosis.effects
-    assert first.name in pair
-    assert pair - {first.name} <= set(first.confounded_with)
-    inclines = [region for region in diagnosis.where if region.axis == "incline_deg"]
-    assert inclines
-    assert inclines[0].low is not None
-    assert inclines[0].high is not None
-    assert inclines[0].low <= 30.0 <= inclines[0].high
-    assert not inclines[0].low <= 20.0 <= inclines[0].high
-    assert [region.value for region in diagnosis.where if region.axis == "trial"][:1] == ["slope30"]
-    assert diagnosis.next_trials
-    # Of what friction and the strip predict at even odds: more than chance finds in as many draws. Within the lab's
-    # ranges it may be little; then the trial beyond them tells.
-    proposed = max(diagnosis.next_trials, key=lambda trial: trial.information_bits)
-    assert proposed.information_bits > 0.1
-    # Both are foretold, and told apart: not named among what is hardly told from the one that is chosen.
-    assert pair <= set(proposed.predictions)
-    (other,) = pair - {first.name}
-    assert other in proposed.why.partition(":")[0].partition(", hardly")[0]
-
-
-def test_the_papers_outcomes_leave_two_causes_and_a_trial_that_parts_them() -> None:
-    # The whole catalogue takes minutes (test_paper_gap.py).
-    names = ("friction_coefficient", "line_contact_adhesion", "adhesion_coefficient", "magnetization_strength")
-    check_the_papers_gap(diagnose(dataset.load(EXAMPLE), effects=names, jobs=2))
 
 
 def test_a_dataset_in_which_every_frame_is_lost_is_refused_in_one_line() -> None:
