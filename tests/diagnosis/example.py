@@ -162,6 +162,7 @@ def made(**changes: Any) -> Diagnosis:
             RankedHypothesis((), 0.0, 0.0, 15.8, 15.8, 0.0),
         ),
         "gap": Gap(1.0, 16.2, 15.8, 1.1, Interval(0.93, 0.90, 0.95), tuple(ids), by_trial),
+        "failings": (),
         "where": (
             Region("frequency_Hz", 0.81, low=12.0, high=15.0, sigmas=21.0),
             Region("channel", 0.74, value="y", sigmas=19.0),

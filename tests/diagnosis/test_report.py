@@ -8,6 +8,7 @@ from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
+import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
@@ -15,9 +16,7 @@ from tumblers import InputError
 from tumblers.diagnosis import plots
 from tumblers.diagnosis.diagnosis import FILES, Diagnosis
 from tumblers.diagnosis.report.report import report_html
-from tumblers.diagnosis.result import (
-    Region,
-)
+from tumblers.diagnosis.result import MissingWrench, Overlay, Region
 from tumblers.diagnosis.wording.headline import headline
 from tumblers.diagnosis.wording.phrase import title_of
 from tumblers.effects import CATALOGUE
@@ -166,6 +165,54 @@ def test_a_wrench_of_which_the_data_say_nothing_is_hollow_and_cut_off() -> None:
     hollow = [line for line in ax.lines if line.get_markerfacecolor() == "white" and len(line.get_xdata())]
     assert len(hollow) == 1
     assert ax.get_ylim()[1] == pytest.approx(1.25 * 255.0)
+
+
+def test_a_missing_wrench_beyond_the_edge_is_marked_there() -> None:
+    beyond = replace(wrench(), by_frequency={**wrench().by_frequency, "20 Hz": _far(wrench())})
+    ax = plots.plot_wrench(beyond, "frequency", "force", Figure().subplots())
+    marked = [line for line in ax.lines if "arrow" in str(line.get_marker()) and len(line.get_xdata())]
+    # Along z by -9e-7 N, of which the data say little; what lies within is not marked.
+    (line,) = marked
+    assert line.get_xdata().tolist() == pytest.approx([3.2])
+    assert -ax.get_ylim()[1] < line.get_ydata()[0] < 0.0
+    inside = plots.plot_wrench(wrench(), "frequency", "force", Figure().subplots())
+    assert not any("arrow" in str(line.get_marker()) and len(line.get_xdata()) for line in inside.lines)
+
+
+def _far(missing: MissingWrench) -> tuple[np.ndarray, np.ndarray]:
+    value, sigma = missing.by_frequency["10 Hz"]
+    return np.where(np.arange(6) == 2, -9e-7, value), sigma
+
+
+def test_headings_across_half_a_turn_are_drawn_near_each_other() -> None:
+    nominal = np.array([178.0, 179.5, -179.0, -178.0])
+    seen = np.array([-179.5, 179.0, 179.5, -178.5])
+    overlay = Overlay("f15", np.arange(4.0), {"heading": seen}, {"heading": nominal}, {"heading": seen + 0.1}, {})
+    ax = plots.plot_overlay_channel(overlay, "heading", Figure().subplots())
+    measured, dashed, solid = (np.asarray(line.get_ydata()) for line in ax.lines)
+    assert measured.tolist() == pytest.approx([180.5, 179.0, -180.5, -178.5])
+    # No line goes across the panel.
+    assert np.isnan(dashed).tolist() == [False, False, True, False]
+    assert np.nanmax(np.abs(np.diff(solid))) < 180.0
+
+
+def test_the_numbers_under_an_overlay_are_those_of_its_lines(page: str) -> None:
+    assert "34.2 σ with a perfect sensor, 34.0 σ nominal (dashed), 1.2 σ with the effects (solid)" in page
+
+
+def test_the_last_gap_is_named_by_what_it_is_of() -> None:
+    for verdict, words in (("explained", "the effects of the verdict"), ("unexplained", "what follows the data best")):
+        assert f"with {words}" in report_html(small(verdict=verdict))
+    assert "the effects of the verdict" not in report_html(no_gap())
+
+
+def test_a_speed_is_said_to_be_of_the_runs_that_stay_in_view_where_others_do_not() -> None:
+    (proposed,) = small().next_trials
+    said = {"a": {"climbs": (0.5, 0.5), "slides_away": (0.5, 0.5), "mean_speed_m_per_s": (0.03, 0.001)}}
+    staying = {"a": {"climbs": (1.0, 0.0), "mean_speed_m_per_s": (0.03, 0.001)}}
+    for predictions, told in ((said, True), (staying, False)):
+        page = report_html(small(next_trials=(replace(proposed, predictions=predictions),)))
+        assert ("mm/s where it stays in view" in page) == told
 
 
 def test_gaps_are_drawn_in_the_order_of_the_trials() -> None:

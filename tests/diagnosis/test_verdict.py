@@ -11,7 +11,7 @@ import pytest
 from tumblers.diagnosis.fitting.fitter import Fitter
 from tumblers.diagnosis.fitting.hypothesis import Hypothesis
 from tumblers.diagnosis.gap.comparison import Comparison, Residual
-from tumblers.diagnosis.gap.predictive import is_right
+from tumblers.diagnosis.gap.predictive import failings, is_explained, is_right
 from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.diagnosis.what.attribute import LAPSE, REFUSED, Attribution, _ranked
 from tumblers.diagnosis.what.contender import Contender, of_fit, of_nominal
@@ -76,6 +76,44 @@ def test_what_is_to_explain_a_gap_leaves_no_more_than_right_effects_do(left: flo
     found, chosen = judge(compared(COUNT), Attribution((best, nominal), 1.0, False), True)  # type: ignore[arg-type]
     assert (found, chosen) == (verdict, best)
     assert is_right(compared(COUNT), best.residual)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("left", "fitted", "failing"),
+    [(1.08, True, []), (1.09, True, ["all trials"]), (1.09, False, []), (1.7, False, ["all trials", "a trial"])],
+)
+def test_what_fails_is_told_where_the_test_is_failed(left: float, fitted: bool, failing: list[str]) -> None:
+    comparison, residual = compared(COUNT), contender("viscous_drag", left, 0.8).residual
+    comparison.dataset = SimpleNamespace(trials=(SimpleNamespace(id="up"),))
+    found = failings(comparison, residual, fitted)  # type: ignore[arg-type]
+    assert [one.test for one in found] == failing
+    passes = is_explained if fitted else is_right
+    assert passes(comparison, residual) == (not found)  # type: ignore[arg-type]
+    for one in found:
+        assert one.left == pytest.approx(left**2)
+        assert one.allowed is not None
+        assert one.allowed < left**2
+
+
+def test_an_outcome_that_is_contradicted_is_told() -> None:
+    comparison, residual = compared(COUNT - 1), contender("viscous_drag", 1.0, 0.8).residual
+    comparison.dataset = SimpleNamespace(trials=(SimpleNamespace(id="up"),))
+    residual.trials[0][-1] = 9.0
+    found = failings(comparison, residual, True)  # type: ignore[arg-type]
+    assert [(one.test, one.trials) for one in found] == [("an outcome", ("up",))]
+
+
+def test_no_effect_is_farther_behind_for_its_place_in_the_catalogue() -> None:
+    order = ("friction_coefficient", "viscous_drag", "size_error")
+    made = [replace(contender(name, 1.0, 0.1), log_evidence=-4.0 - 0.005 * k) for k, name in enumerate(order)]
+    best = replace(made[0], log_evidence=0.0)
+    pair = replace(made[1], names=("friction_coefficient", "size_error"), log_evidence=-1.01)
+    attribution = Attribution((best, made[1], made[2]), 1.0, False, order=order)
+    assert attribution.log_odds(best, "viscous_drag") == pytest.approx(4.0)
+    assert attribution.log_odds(best, "size_error") == pytest.approx(4.0)
+    # What is likely beside another is not ruled out because it is unlikely alone.
+    paired = replace(attribution, contenders=(best, pair, made[1], made[2]))
+    assert paired.log_odds(best, "size_error") == pytest.approx(-np.log(np.exp(-4.0) + np.exp(-1.0)))
 
 
 # The nominal model has 5 % of 88 % where another has e^2.81 = 16.6 times as much.

@@ -14,7 +14,7 @@ import pytest
 from tumblers.dataset import Tolerance
 from tumblers.diagnosis.quantity import percent, rounded, with_interval
 from tumblers.diagnosis.report.where import where_part
-from tumblers.diagnosis.result import EffectEstimate, Interval, RankedHypothesis, Region
+from tumblers.diagnosis.result import EffectEstimate, Failing, Interval, RankedHypothesis, Region
 from tumblers.diagnosis.wording.condition import condition_of_table
 from tumblers.diagnosis.wording.headline import headline
 from tumblers.diagnosis.wording.phrase import phrase_of, title_of
@@ -44,6 +44,60 @@ def test_the_verdict_is_one_sentence_a_student_understands() -> None:
     partial = headline(made(verdict="unexplained", ranking=wide))
     assert "The best partial cause is that the robot is pulled along +y" in partial
     assert "with it, 1.1 σ are left" in partial
+
+
+def test_what_the_sensor_takes_of_an_unexplained_gap_is_told() -> None:
+    gap = replace(made().gap, before=16.2, after_nuisance_only=9.0)
+    said = headline(made(verdict="unexplained", effects=(), chosen=(), gap=gap))
+    assert "the gap is 16.2 σ (9.0 σ with the sensor refitted, noise alone gives 1.0 σ)" in said
+    less = headline(made(verdict="unexplained", effects=(), chosen=(), gap=replace(gap, after_nuisance_only=16.1)))
+    assert "the gap is 16.2 σ (noise alone gives 1.0 σ)" in less
+
+
+def test_an_unexplained_verdict_says_why() -> None:
+    failings = (
+        Failing("all trials", left=1.241, allowed=1.18),
+        Failing("a trial", ("f15",), 3.25, 2.4),
+        Failing("an outcome", ("slope30", "tilt05")),
+        Failing("trials left out"),
+        Failing("the path"),
+    )
+    why = [text for label, text in points(made(verdict="unexplained", failings=failings)) if label == "why"]
+    cause = "with the partial cause"
+    assert why == [
+        f"over all trials a mean square of 1.24 is left {cause} where it is fitted; what is right leaves 1.18 at most.",
+        f"in f15 a mean square of 3.25 is left {cause} where it is fitted; what is right leaves 2.4 at most.",
+        f"the outcome of slope30, tilt05 is contradicted {cause}.",
+        "trials that are left out of the fit are not foretold by it.",
+        "the simulated robot itself comes hardly nearer to the measured one.",
+    ]
+    nothing = points(made(verdict="unexplained", effects=(), chosen=(), failings=failings[2:3]))
+    assert ("why", "the outcome of slope30, tilt05 is contradicted of the nominal model.") not in nothing
+    assert ("why", "the outcome of slope30, tilt05 is contradicted by the nominal model.") in nothing
+    table = json.loads(made(verdict="unexplained", failings=failings).to_json())
+    assert table["failings"][1] == {"test": "a trial", "trials": ["f15"], "left": 3.25, "allowed": 2.4}
+    assert "why" not in dict(points(made()))
+
+
+def test_two_effects_that_would_close_an_unexplained_gap_are_told() -> None:
+    def said(verdict: str, gap: float) -> list[str]:
+        pair = replace(made().ranking[1], gap=gap)
+        ranking = (replace(made().ranking[0], gap=1.1), pair, *made().ranking[2:])
+        diagnosis = made(verdict=verdict, ranking=ranking)
+        return [text for label, text in points(diagnosis) if label == "caution" and "would leave" in text]
+
+    assert said("explained", 1.0) == said("unexplained", 1.1) == []
+    (text,) = said("unexplained", 1.0)
+    assert text.startswith(
+        "stray field gradient with substrate tilt would leave 1.0 σ where it is fitted (probability 6 %)"
+    )
+
+
+def test_the_file_has_the_headline_and_the_cautions_of_the_report() -> None:
+    table = json.loads(outcomes_only().to_json())
+    assert table["headline"] == headline(outcomes_only())
+    assert table["cautions"] == [text for label, text in points(outcomes_only()) if label == "caution"] != []
+    assert table["title"] == outcomes_only().dataset.title
 
 
 def test_where_there_is_no_gap_what_is_left_is_told_and_what_is_likelier_all_the_same() -> None:

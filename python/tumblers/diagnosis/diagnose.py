@@ -25,12 +25,12 @@ from .fitting.sandwich import MOST_FACTOR
 from .gap.comparison import Comparison
 from .gap.job import Job
 from .gap.loss import robust_cost
-from .gap.predictive import is_right
+from .gap.predictive import failings, is_right
 from .gap.simulator import Simulator
 from .how_far.followed import LEAST_FOLLOWED, followed
 from .how_far.held_out import HeldOut, folds, held_out, is_foretold, shrink
 from .how_far.overlay import overlays
-from .result import EffectEstimate, HeatMap, Interval, NextTrial, RankedHypothesis, Region, TrialFloor, Verdict
+from .result import EffectEstimate, Failing, HeatMap, Interval, NextTrial, RankedHypothesis, Region, TrialFloor, Verdict
 from .what.attribute import LAPSE, PRIOR, REFUSED, Attribution, attribute, seen_from_the_best
 from .what.contender import Contender
 from .what.estimate import intervals
@@ -142,10 +142,22 @@ class _Conclusion:
 
     def stands(self, contender: Contender) -> bool:
         """Return whether a contender stands on trials that its fit had not seen, and its own run follows the data."""
+        return self.foretold(contender) and followed(self.fitter, contender) >= LEAST_FOLLOWED
+
+    def foretold(self, contender: Contender) -> bool:
+        """Return whether a contender stands on trials that its fit had not seen."""
         gap = shrink(self.fitter, self.held_out(contender), self.seed)
         nominal = self.held_out(self.attribution.nominal)
-        foretold = is_foretold(self.fitter, nominal, self.held_out(contender), gap, contender)
-        return foretold and followed(self.fitter, contender) >= LEAST_FOLLOWED
+        return is_foretold(self.fitter, nominal, self.held_out(contender), gap, contender)
+
+    def failings(self, chosen: Contender) -> tuple[Failing, ...]:
+        """Return what keeps a contender from explaining the data."""
+        found = failings(self.comparison, chosen.residual, fitted=bool(chosen.names))
+        if not chosen.names:
+            return found
+        if not self.foretold(chosen):
+            found = (*found, Failing("trials left out"))
+        return found if followed(self.fitter, chosen) >= LEAST_FOLLOWED else (*found, Failing("the path"))
 
     def measure(self) -> list[Contender]:
         """Return the likeliest contenders, what they say of trials left out being known."""
@@ -184,6 +196,7 @@ class _Conclusion:
             gap = shrink(self.fitter, nominal, self.seed)
         if chosen.names:
             gap = replace(gap, followed=followed(self.fitter, chosen))
+        failing = self.failings(chosen) if verdict == "unexplained" else ()
         tied = ties(comparison, attribution, chosen, lambda other: self._lead(chosen, other))
 
         estimates, shown = self._estimates(chosen, tied), overlays(self.fitter, nominal, self.held_out(chosen), chosen)
@@ -215,6 +228,7 @@ class _Conclusion:
             chosen=chosen.effects,
             ranking=ranking,
             gap=gap,
+            failings=failing,
             where=tuple(sorted(regions, key=lambda region: -region.share_of_gap)),
             next_trials=proposed,
             ruled_out=self._ruled_out(chosen, tied),
@@ -297,12 +311,13 @@ class _Conclusion:
         return next_trials(dataset, simulator, hypotheses, self.seed, weights)
 
     def _ruled_out(self, chosen: Contender, tied: dict[str, tuple[str, ...]]) -> dict[str, str]:
-        """For each improbable single effect the trial that speaks most against it."""
+        """For each effect that is improbable, alone and beside another, the trial that speaks most against it alone."""
         out = {}
         named = {*chosen.names, *(other for others in tied.values() for other in others)}
         for contender in self.attribution.contenders:
-            odds = chosen.log_evidence - contender.log_evidence
-            if len(contender.names) != 1 or contender.names[0] in named or odds < _RULED_OUT:
+            if len(contender.names) != 1 or contender.names[0] in named:
+                continue
+            if self.attribution.log_odds(chosen, contender.names[0]) < _RULED_OUT:
                 continue
             against = [
                 self.fitter.trial_cost(contender.residual, i) - self.fitter.trial_cost(chosen.residual, i)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, fields, replace
+from dataclasses import asdict, dataclass, fields, replace
 from math import isfinite
 from os import PathLike
 from pathlib import Path
@@ -24,6 +24,7 @@ from ..scenario import Scenario
 from ..section import write_entry
 from .result import (
     EffectEstimate,
+    Failing,
     Gap,
     HeatMap,
     Interval,
@@ -75,6 +76,8 @@ class Diagnosis:
         Every hypothesis that was fitted, the best first.
     gap
         Before and after, on trials that no fit has seen.
+    failings
+        Of an ``unexplained`` verdict, what keeps the best hypothesis from explaining the data.
     where
         Regions of the gap, the greatest share first.
     next_trials
@@ -98,6 +101,7 @@ class Diagnosis:
     chosen: tuple[Effect, ...]
     ranking: tuple[RankedHypothesis, ...]
     gap: Gap
+    failings: tuple[Failing, ...]
     where: tuple[Region, ...]
     next_trials: tuple[NextTrial, ...]
     ruled_out: Mapping[str, str]
@@ -172,10 +176,16 @@ class Diagnosis:
 
     def to_json(self) -> str:
         """Return the diagnosis as ``tumblers-diagnosis/1``."""
+        from .wording.caution import cautions
+        from .wording.headline import headline
+
         gap = self.gap
         table: dict[str, Any] = {
             "format": FORMAT,
+            "title": self.dataset.title,
             "verdict": self.verdict,
+            "headline": headline(self),
+            "cautions": list(cautions(self)),
             "tracked_point": self.tracked_point,
             "z_origin_tolerance_m": self.z_origin_tolerance_m,
             "effects": [
@@ -212,6 +222,7 @@ class Diagnosis:
                     for trial, values in gap.by_trial.items()
                 },
             },
+            "failings": [asdict(failing) for failing in self.failings],
             "where": [_region(region) for region in self.where],
             "next_trials": [
                 {

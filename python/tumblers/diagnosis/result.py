@@ -13,6 +13,7 @@ from ..effects.parameter import Nuisance
 
 __all__ = [
     "EffectEstimate",
+    "Failing",
     "Gap",
     "HeatMap",
     "Interval",
@@ -127,6 +128,28 @@ class Gap:
     held_out_trials: tuple[str, ...]
     by_trial: Mapping[str, tuple[float, float, float]]
     followed: float | None = None
+
+
+@dataclass(frozen=True)
+class Failing:
+    """What keeps the best hypothesis from explaining the data.
+
+    Attributes
+    ----------
+    test
+        ``all trials`` or ``a trial`` where a mean square is more than a right model leaves, ``an outcome`` that is
+        contradicted, ``trials left out`` that the others do not foretell, or ``the path``, to which the simulated robot
+        itself comes no nearer.
+    trials
+        Their ids, where it is about some.
+    left, allowed
+        Σρ/n, and what is allowed of it at most; None where the test is of something else.
+    """
+
+    test: Literal["all trials", "a trial", "an outcome", "trials left out", "the path"]
+    trials: tuple[str, ...] = ()
+    left: float | None = None
+    allowed: float | None = None
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
+from ..result import Failing
 from .comparison import Comparison, Residual
 from .loss import huber, robust_cost
 from .reading import BORDERS, reached
@@ -18,6 +19,7 @@ from .reading import BORDERS, reached
 __all__ = [
     "MOST_EXPLAINED",
     "contradicted",
+    "failings",
     "is_explained",
     "is_right",
     "is_wanting",
@@ -65,6 +67,32 @@ def is_explained(comparison: Comparison, residual: Residual) -> bool:
     return is_right(comparison, residual) and _leaves_at_most(MOST_EXPLAINED, comparison, residual)
 
 
+def failings(comparison: Comparison, residual: Residual, fitted: bool) -> tuple[Failing, ...]:
+    """Return what a hypothesis fails of the test, nothing where it passes.
+
+    Parameters
+    ----------
+    comparison
+        The dataset.
+    residual
+        How wrong the hypothesis is.
+    fitted
+        Whether it has effects that were fitted (`is_explained`), or is the nominal model (`is_right`).
+    """
+    ids = [trial.id for trial in comparison.dataset.trials]
+    made = []
+    over_all, most = mean_square(comparison, residual), MOST_EXPLAINED if fitted else _RIGHT
+    if not _leaves_at_most(most, comparison, residual):
+        made.append(Failing("all trials", left=over_all, allowed=_allowed(most, comparison)))
+    squares, worst = mean_squares(residual), _worst(np.asarray(comparison.sizes))
+    made += [
+        Failing("a trial", (ids[i],), float(squares[i]), float(worst[i])) for i in np.flatnonzero(~(squares <= worst))
+    ]
+    if (against := contradicted(comparison, residual)).any():
+        made.append(Failing("an outcome", tuple(ids[i] for i in np.flatnonzero(against))))
+    return tuple(made)
+
+
 def contradicted(comparison: Comparison, residual: Residual) -> NDArray[np.bool_]:
     """Return in which trials a hypothesis says something else than an outcome that was noted, shape (trials,).
 
@@ -106,8 +134,12 @@ def leaves_a_gap(values: NDArray[np.float64]) -> bool:
 
 def _leaves_at_most(many: float, comparison: Comparison, residual: Residual) -> bool:
     """Return whether the mean square is no more than is allowed of many numbers, or than noise seldom gives."""
+    return mean_square(comparison, residual) <= _allowed(many, comparison)
+
+
+def _allowed(many: float, comparison: Comparison) -> float:
     count = max(comparison.count, 1)
-    return mean_square(comparison, residual) <= max(many, float(chi2.isf(_SELDOM, count)) / count)
+    return max(many, float(chi2.isf(_SELDOM, count)) / count)
 
 
 def _worst(count: NDArray[np.int_]) -> NDArray[np.float64]:

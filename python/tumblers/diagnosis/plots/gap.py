@@ -53,6 +53,7 @@ def plot_gap(gap: Gap, ax: Axes | None = None) -> Axes:
     ax.minorticks_off()
     ax.set_yticks(rows, [shortened(trial, _LONGEST) for trial in gap.by_trial], fontsize="small")
     ax.set_ylim(len(rows) - 0.4, -0.6)
-    ax.set(title="Gap of each trial", xlabel="gap (noise sigmas)")
+    cut = f"; below {_LEAST:g} drawn there" if np.any(values < _LEAST) else ""
+    ax.set(title="Gap of each trial", xlabel=f"gap (noise sigmas{cut})")
     legend_above(ax, ncols=2)
     return ax

@@ -22,6 +22,7 @@ _CHANNELS = {
     "tilt": ("tilt (°)", 1.0),
     "heading": ("heading (°)", 1.0),
 }
+_TURN_DEG = 360.0
 # As many dots as can be told apart.
 _MOST_DOTS = 150
 _CHANNEL_INCHES, _FRAME_INCHES = 1.15, 0.85
@@ -47,6 +48,8 @@ def plot_overlay_channel(overlay: Overlay, channel: str, ax: Axes | None = None)
     ax = axes_or_new(ax)
     label, factor = _CHANNELS.get(channel, (channel, 1.0))
     every = max(1, -(-len(overlay.time_s) // _MOST_DOTS))
+    if channel == "heading":
+        overlay = _turned(overlay)
     measured = np.asarray(overlay.measured[channel], dtype=float)
     dots, values = overlay.time_s[::every], factor * measured[::every]
     ax.plot(dots, values, ".", color="0.35", markersize=3.0, label="measured", zorder=3)
@@ -54,9 +57,27 @@ def plot_overlay_channel(overlay: Overlay, channel: str, ax: Axes | None = None)
     for paths, colour, dashes, name in lines:
         if channel in paths:
             values = factor * np.asarray(paths[channel], dtype=float)
+            if channel == "heading":
+                # A line across the whole panel is no motion.
+                values = np.where(np.abs(np.diff(values, prepend=values[:1])) > 0.5 * _TURN_DEG, np.nan, values)
             ax.plot(overlay.time_s, values, color=colour, linestyle=dashes, linewidth=1.3, label=name)
     ax.set_ylabel(label)
     return ax
+
+
+def _turned(overlay: Overlay) -> Overlay:
+    """Return an overlay whose headings are those within half a turn of the nominal ones: 179° and -179° are near."""
+    if "heading" not in overlay.nominal:
+        return overlay
+    nominal = np.asarray(overlay.nominal["heading"], dtype=float)
+
+    def near(paths: Mapping[str, Floats]) -> Mapping[str, Floats]:
+        if "heading" not in paths:
+            return paths
+        away = np.asarray(paths["heading"], dtype=float) - nominal
+        return {**paths, "heading": nominal + away - _TURN_DEG * np.round(away / _TURN_DEG)}
+
+    return replace(overlay, measured=near(overlay.measured), explained=near(overlay.explained))
 
 
 def plot_overlay_difference(overlay: Overlay, channel: str, ax: Axes | None = None) -> Axes:

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from ...plots.style import BLUE, axes_or_new
+from ..quantity import percent
 from ..result import RankedHypothesis
 
 __all__ = ["plot_ranking"]
@@ -39,12 +40,12 @@ def plot_ranking(ranking: Sequence[RankedHypothesis], ax: Axes | None = None, mo
     ax.barh(places, probabilities, color=BLUE, height=0.65)
     for place, ranked in zip(places, shown, strict=True):
         held_out = ranked.held_out_gap
-        left = f", {held_out:.3g} σ left" if held_out is not None and np.isfinite(held_out) else ""
+        left = f", {held_out:.3g} σ held out" if held_out is not None and np.isfinite(held_out) else ""
         inside = ranked.probability > 0.5
         ax.text(
             ranked.probability + (-0.015 if inside else 0.015),
             place,
-            f"{100.0 * ranked.probability:.0f} %{left}",
+            f"{percent(ranked.probability)}{left}",
             va="center",
             ha="right" if inside else "left",
             color="white" if inside else "0.15",

@@ -7,6 +7,7 @@ from typing import Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
+from numpy.typing import NDArray
 
 from ...plots.style import BLUE, GREEN, ORANGE, axes_or_new, legend_above
 from ..quantity import handy_unit
@@ -25,6 +26,9 @@ _WORDS: dict[By, str] = {
     "frequency": "frequency",
 }
 _PARTS: dict[Part, tuple[int, str, str]] = {"force": (0, "N", "F"), "torque": (3, "N m", "T")}
+_COLOURS = (ORANGE, BLUE, GREEN)
+# Between the components of a label, of the way to the next label.
+_APART = 0.2
 _LONGEST = 14
 # An estimate as uncertain as this share of what was assumed beforehand says nothing.
 _UNKNOWN = 0.7
@@ -40,7 +44,7 @@ def averages(missing: MissingWrench, by: By) -> Mapping[str, tuple[Floats, Float
 def plot_wrench(missing: MissingWrench, by: By = "phase", part: Part = "force", ax: Axes | None = None) -> Axes:
     """Plot the force or the torque that the model lacks, with one standard deviation.
 
-    Hollow markers are averages of which the data say next to nothing.
+    Hollow markers are averages of which the data say next to nothing; an arrow at the edge is one that lies beyond.
 
     Parameters
     ----------
@@ -66,12 +70,12 @@ def plot_wrench(missing: MissingWrench, by: By = "phase", part: Part = "force", 
     sizes = np.abs(np.concatenate([values, sigmas]))
     factor, written = handy_unit(float(sizes[np.isfinite(sizes)].max(initial=0.0)), unit)
     places = np.arange(len(groups))
-    for axis, (colour, marker) in enumerate(zip((ORANGE, BLUE, GREEN), "sov", strict=True)):
+    for axis, (colour, marker) in enumerate(zip(_COLOURS, "sov", strict=True)):
         sure = sigmas[:, axis] < _UNKNOWN * missing.prior_sigma[first + axis]
         for chosen, face in ((sure, colour), (~sure, "white")):
             # One of the two carries the name, though it may have nothing to draw.
             ax.errorbar(
-                places[chosen] + 0.2 * (axis - 1),
+                places[chosen] + _APART * (axis - 1),
                 factor * values[chosen, axis],
                 factor * sigmas[chosen, axis],
                 color=colour,
@@ -90,6 +94,7 @@ def plot_wrench(missing: MissingWrench, by: By = "phase", part: Part = "force", 
             # The bars of which the data say less are cut off, so that the others can be read.
             highest = 1.25 * factor * float(reach[clear].max())
             ax.set_ylim(-highest, highest)
+            _mark_beyond(ax, places, factor * values, highest)
             break
     ax.axhline(0.0, color="0.5", linewidth=0.8, zorder=0)
     labels = [shortened(label, _LONGEST) for label in groups]
@@ -101,3 +106,12 @@ def plot_wrench(missing: MissingWrench, by: By = "phase", part: Part = "force", 
     legend_above(ax, ncols=3)
     ax.set_title(ax.get_title(loc="left"), loc="left", fontsize="medium")
     return ax
+
+
+def _mark_beyond(ax: Axes, places: NDArray[np.int_], values: Floats, highest: float) -> None:
+    """Mark values that lie beyond the edges by arrows there, of which nothing else would be seen."""
+    for axis, colour in enumerate(_COLOURS):
+        for sign, arrow in ((1.0, "$\\uparrow$"), (-1.0, "$\\downarrow$")):
+            beyond = sign * values[:, axis] > highest
+            at = places[beyond] + _APART * (axis - 1)
+            ax.plot(at, np.full(at.shape, 0.93 * sign * highest), color=colour, marker=arrow, linestyle="none")

@@ -24,6 +24,12 @@ from .where import where_part, wrench_part
 
 __all__ = ["report_html"]
 
+# What the gap "after" is of: without a partial cause of the nominal numbers too.
+_LAST = {
+    "no_gap": "and with the nominal numbers within their tolerances",
+    "explained": "with the effects of the verdict",
+    "unexplained": "with what follows the data best",
+}
 _VERDICTS = {"no_gap": "No gap", "explained": "Explained", "unexplained": "Unexplained"}
 _MOST_RANKED = 30
 
@@ -75,7 +81,7 @@ def _how_far(diagnosis: Diagnosis) -> str:
             for words, value in (
                 ("nominal model, a perfect sensor", gap.before),
                 ("with the sensor's nuisances refitted", gap.after_nuisance_only),
-                ("with the effects of the verdict", gap.after),
+                (_LAST[diagnosis.verdict], gap.after),
                 ("what noise alone gives", floor),
             )
         ],
@@ -138,7 +144,8 @@ def _ranking(diagnosis: Diagnosis) -> str:
     svg = svg_bytes(lambda f: plot_ranking(top, f.subplots()), WIDTH_IN, 0.9 + 0.32 * names)
     words = (
         "Every hypothesis that was fitted, the best first. Gaps are in noise sigmas; held out means on trials that the "
-        "fit had not seen, measured for the leading hypotheses. The evidence is relative to the nominal model."
+        "fit had not seen, measured for the leading hypotheses. The evidence is relative to the nominal model. The "
+        "probability of an effect, above, is that of all hypotheses with it together."
     )
     more = len(diagnosis.ranking) - len(shown)
     rest = text(f"{more} more, all less probable, are in diagnosis.json.", "soft") if more else ""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from html import escape
 from math import isfinite
 
@@ -15,7 +16,7 @@ from ..quantity import plain, rounded, sigmas
 from ..result import NextTrial
 from ..wording.condition import condition_of, condition_of_table
 from ..wording.phrase import title_of
-from ..wording.words import NO_TRIAL, observation_words, reason_words, set_words
+from ..wording.words import LEAVES, NO_TRIAL, observation_words, reason_words, set_words
 
 __all__ = ["floor_part", "next_part", "overlay_part"]
 
@@ -109,7 +110,7 @@ def floor_part(diagnosis: Diagnosis) -> str:
 
 def _proposal(number: int, proposed: NextTrial) -> str:
     rows = [
-        [escape(set_words(tuple(name.split(" + ")))), escape(observation_words(kind, mean, sigma))]
+        [escape(set_words(tuple(name.split(" + ")))), escape(observation_words(kind, mean, sigma) + _whose(kind, said))]
         for name, said in proposed.predictions.items()
         for kind, (mean, sigma) in said.items()
     ]
@@ -120,9 +121,18 @@ def _proposal(number: int, proposed: NextTrial) -> str:
     )
 
 
+def _whose(kind: str, said: Collection[str]) -> str:
+    """Return that a number is of the runs that stay in view, where others do not."""
+    leaves = not LEAVES.isdisjoint(said)
+    return " where it stays in view" if leaves and kind not in {"climbs", *LEAVES} else ""
+
+
 def _caption(diagnosis: Diagnosis, trial: str) -> str:
     values = diagnosis.gap.by_trial.get(trial)
-    gap = f": {sigmas(values[0])} σ before, {sigmas(values[2])} σ after" if values is not None else ""
+    gap = ""
+    if values is not None:
+        perfect, refitted, after = map(sigmas, values)
+        gap = f": {perfect} σ with a perfect sensor, {refitted} σ nominal (dashed), {after} σ with the effects (solid)"
     return condition_of(diagnosis.dataset.trial(trial)) + gap
 
 

@@ -45,8 +45,10 @@ def where_part(diagnosis: Diagnosis) -> str:
     if not rows and not maps:
         return text("No part of the data stands out above the noise.")
     words = (
-        "Differences of the nominal model, the sensor's nuisances fitted. Shares are of the squared difference above "
-        "the noise, each axis for itself, so that they do not add up. In the maps 1 is what noise alone gives."
+        "Differences of the nominal model, the sensor's nuisances fitted, the nominal numbers as the verdict's effects "
+        "ask for them, and as much of the computed motion taken for uncertain as is with these: so they may be other "
+        "than in How far. Shares are of the squared difference above the noise, each axis for itself, so that they do "
+        "not add up. In the maps 1 is what noise alone gives."
     )
     return text(words, "soft") + (table or text("No region stands out above the noise.")) + grid(maps)
 
@@ -72,7 +74,8 @@ def wrench_part(diagnosis: Diagnosis) -> str:
         "The force and the torque (substrate frame) that must be added along the runs for the nominal model to follow "
         "the tracks, with one standard deviation. Before the data they were taken as 0 ± "
         f"{plain(force, 'N')} and 0 ± {plain(torque, 'N m')}: a hollow marker is an average of which the data say "
-        "little more, such as a force that friction holds."
+        "little more, such as a force that friction holds. A small arrow at the edge stands for an average beyond it, "
+        "for which see the numbers."
     )
     table = data_table(heads, rows, numbers=range(2, 8))
     return text(words, "soft") + grid(pictures) + f"<details><summary>Numbers</summary>{table}</details>\n"

@@ -78,12 +78,15 @@ class Attribution:
         Whether the nominal model passes the predictive test against its own noise.
     refused
         Names of those that trials left out, or their own run, put behind a tied one.
+    order
+        Names of the effects that were tried, as the catalogue lists them.
     """
 
     contenders: tuple[Contender, ...]
     dispersion: float
     nominal_is_right: bool
     refused: tuple[tuple[str, ...], ...] = ()
+    order: tuple[str, ...] = ()
 
     @property
     def nominal(self) -> Contender:
@@ -117,6 +120,21 @@ class Attribution:
             One of them.
         """
         return contender.probability - self._lapse(contender)
+
+    def log_odds(self, contender: Contender, name: str) -> float:
+        """Return ln of the odds of a contender against an effect, by itself or beside another.
+
+        Of equals the one that the catalogue lists first is preferred, but no effect is farther behind for its place.
+
+        Parameters
+        ----------
+        contender
+            One of them.
+        name
+            Of the effect.
+        """
+        evidence = [c.log_evidence + _place_cost(c.names, self.order) for c in self.contenders if name in c.names]
+        return contender.log_evidence + _place_cost(contender.names, self.order) - float(np.logaddexp.reduce(evidence))
 
     def _lapse(self, contender: Contender) -> float:
         """Return a contender's share of `LAPSE`; what counts as the nominal model has left it its own."""
@@ -183,7 +201,7 @@ def attribute(
         if resolves(ranked[0].effects):
             break
         contenders, compared = in_steps_of(fitter, ranked[0], contenders, seed, tell), False
-    return seen_from_the_best(fitter, Attribution(tuple(ranked), dispersion, right))
+    return seen_from_the_best(fitter, Attribution(tuple(ranked), dispersion, right, order=tuple(search.names)))
 
 
 def seen_from_the_best(fitter: Fitter, attribution: Attribution) -> Attribution:
@@ -267,6 +285,11 @@ def _may_be_tolerated(fitter: Fitter, fit: Fit, dispersion: float) -> bool:
     return fitter.cost(there, nearest) - fitter.again(fit).cost <= (most + 2.0 * fitter.comparison.rough) * dispersion
 
 
+def _place_cost(names: Sequence[str], order: Sequence[str]) -> float:
+    """Return what a hypothesis's place in the catalogue costs it, ln."""
+    return _PER_PLACE * sum(order.index(name) for name in names if name in order)
+
+
 def _seen(fitter: Fitter, contender: Contender, first: bool) -> Contender:
     """Hold a contender against the noise of the moment; the first with its derivatives."""
     if contender.fit is None:
@@ -298,12 +321,11 @@ def _ranked(
         1: log(PRIOR[1] / listed),
         2: log(PRIOR[2] / (listed * (listed - 1) // 2)) - SECOND,
     }
-    place = {name: k for k, name in enumerate(effects)}
     scored = []
     for c in contenders:
         likelihood = -0.5 * c.total / dispersion
         evidence = likelihood + prior[len(c.names)]
-        evidence -= _PER_PLACE * sum(place[name] for name in c.names)
+        evidence -= _place_cost(c.names, effects)
         if c.fit is not None:
             evidence += log_occam(c.fit, dispersion, comparison.independent)
         scored.append((evidence, replace(c, log_likelihood=likelihood)))

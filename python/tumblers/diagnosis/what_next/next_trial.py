@@ -159,7 +159,7 @@ def _proposal(option: Candidate, foretold: Foretold, bits: float, names: list[tu
     for label, said in zip(labels, foretold.said, strict=True):
         mine: dict[str, tuple[float, float]] = {}
         if option.incline_deg > 0.0:
-            mine["climbs"] = _chance(float(said.shares @ said.climbs))
+            mine["climbs"] = _chance(said.share(CLIMBS))
         for event, kind in ((SLIDES, "slides_away"), (RUNS, "runs_away")):
             if np.any(said.events == event):
                 mine[kind] = _chance(said.share(event))

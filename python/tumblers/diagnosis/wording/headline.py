@@ -44,7 +44,10 @@ def headline(diagnosis: Diagnosis) -> str:
     none = (
         f"none of the {tried} effects that were tried closes it" if tried > 1 else "no effect that was tried closes it"
     )
-    left = f"the gap is {gap_words(gap.before)} ({floor})"
+    refitted = f"{gap_words(gap.after_nuisance_only)} with the sensor refitted, "
+    # Where the sensor takes next to nothing, or more is left with it, that would only be one more number.
+    sensor = gap.before - gap.after_nuisance_only > CLOSED
+    left = f"the gap is {gap_words(gap.before)} ({refitted if sensor else ''}{floor})"
     if not phrases:
         return f"Unexplained: {left}, and {none}."
     partial = " and ".join(f"{phrase.cause}, {phrase.amount.rstrip(',')}" for phrase in phrases)

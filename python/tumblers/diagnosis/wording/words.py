@@ -20,6 +20,7 @@ from .headline import CLOSED, ONE_PERCENT, gap_words, headline, only_uncertain
 from .phrase import meaning_of, title_of, unit_of
 
 __all__ = [
+    "LEAVES",
     "NO_TRIAL",
     "observation_words",
     "points",
@@ -87,6 +88,10 @@ _EVENTS = {
 }
 
 
+# Of these no speed is noted.
+LEAVES = frozenset(_EVENTS) - {"climbs"}
+
+
 def summary(diagnosis: Diagnosis) -> str:
     """Return a diagnosis in plain words for a terminal: the verdict, where, what, how far, ties, next, cautions.
 
@@ -122,7 +127,7 @@ def points(diagnosis: Diagnosis, *, whole: bool = False) -> tuple[tuple[str, str
     whole
         Whether everything that is ruled out is named, as in the report, to which a terminal points for the rest.
     """
-    said: list[tuple[str, str]] = []
+    said: list[tuple[str, str]] = [("why", text) for text in _failings(diagnosis)]
     where = _where(diagnosis)
     if where:
         said.append(("where", where))
@@ -221,6 +226,27 @@ def _in_parts(diagnosis: Diagnosis) -> str:
             there = f"from {extent.split(' ')[0]} s on" if region.axis == "time_s" else f"at {axis} {extent} alone"
             parts.append(f"{region.what} {there}, {percent(region.share_of_gap)} of the gap would be gone")
     return f" With {'; or, with '.join(parts)}." if parts else ""
+
+
+def _failings(diagnosis: Diagnosis) -> Iterator[str]:
+    """Return what keeps the best hypothesis from explaining the data."""
+    best, fitted = (
+        ("with the partial cause", " where it is fitted") if diagnosis.effects else ("by the nominal model", "")
+    )
+    for failing in diagnosis.failings:
+        trials = ", ".join(failing.trials)
+        if failing.test == "trials left out":
+            yield "trials that are left out of the fit are not foretold by it."
+        elif failing.test == "the path":
+            yield "the simulated robot itself comes hardly nearer to the measured one."
+        elif failing.test == "an outcome":
+            yield f"the outcome of {trials} is contradicted {best}."
+        elif failing.left is not None and failing.allowed is not None:
+            there = f"in {trials}" if trials else "over all trials"
+            yield (
+                f"{there} a mean square of {failing.left:.3g} is left {best}{fitted}; what is right leaves "
+                f"{failing.allowed:.3g} at most."
+            )
 
 
 def _missing(diagnosis: Diagnosis) -> Iterator[str]:
