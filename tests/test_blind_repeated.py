@@ -31,5 +31,5 @@ from tumblers.blind.repeated import Repeated
 def test_a_time_on_four_cores_is_that_of_what_runs_on_one_and_of_what_runs_on_all(
     threads: int, cores: int | None, processor_s: float | None, expected: float | None
 ) -> None:
-    again = Repeated(seconds=150.0, processor_s=processor_s, threads=threads, cores=cores, same=True)
+    again = Repeated(seconds=150.0, processor_s=processor_s, threads=threads, cores=cores, same=True, trials=6)
     assert again.seconds_on(4) == (None if expected is None else pytest.approx(expected))

@@ -159,7 +159,7 @@ def test_what_was_diagnosed_again_counts_for_time_and_sameness() -> None:
                 trials=trials,
             ),
         )
-        for number, (processor_s, trials) in enumerate(((90.0, None), (110.0, 6), (280.0, 12)))
+        for number, (processor_s, trials) in enumerate(((90.0, 1), (110.0, 6), (280.0, 12)))
     ]
     scores = score_records([*again, record(3, answer("none"), said("no_gap", shrink=None))], 7, lambda _: Tie(0.0))
     # 100 s on the wall and 110 s of the processors: 90 s on one core. 150 s and 280 s: 20 s, and 260 s on all.
@@ -191,7 +191,7 @@ def test_the_time_of_more_trials_than_it_has_to_hold_for_is_told_apart() -> None
 def test_a_time_that_is_not_derived_is_said_as_it_was_measured(
     cores: int | None, processor_s: float | None, words: str, expected: float
 ) -> None:
-    again = Repeated(seconds=150.0, processor_s=processor_s, threads=4, cores=cores, same=True)
+    again = Repeated(seconds=150.0, processor_s=processor_s, threads=4, cores=cores, same=True, trials=6)
     one = replace(record(0, answer("none"), said("no_gap", shrink=None)), repeated=again)
     scores = score_records([one], 7, lambda _: Tie(0.0))
     assert value(scores, f"{LONGEST}{words}") == expected

@@ -20,6 +20,7 @@ from tumblers.diagnosis.gap.floor import Floor, Sensitivity
 from tumblers.diagnosis.gap.reading import Reader
 from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.diagnosis.how_far.followed import LEAST_FOLLOWED, _left, followed
+from tumblers.diagnosis.result import Failing
 from tumblers.diagnosis.what.own_noise import settled_at
 from tumblers.diagnosis.wording.headline import headline
 from tumblers.diagnosis.wording.words import points
@@ -86,7 +87,9 @@ def test_what_is_within_the_sensor_s_noise_leaves_nothing_and_a_trial_counts_by_
 def test_the_headline_says_that_what_would_close_the_gap_follows_nothing() -> None:
     ranking = (replace(made().ranking[0], gap=1.0), *made().ranking[1:])
     for share, nearer in ((0.05, "comes only 5 % nearer to"), (-0.2, "comes no nearer to"), (0.9, "too few trials")):
-        diagnosis = made(verdict="unexplained", gap=replace(made().gap, followed=share), ranking=ranking)
+        left_out = (Failing("trials left out"),)
+        gap = replace(made().gap, followed=share)
+        diagnosis = made(verdict="unexplained", gap=gap, ranking=ranking, failings=left_out)
         assert nearer in headline(diagnosis)
         (far,) = (text for label, text in points(diagnosis) if label == "how far")
         assert ("by the sensor's noise alone" in far) == (share < LEAST_FOLLOWED)
@@ -105,7 +108,16 @@ def test_what_is_not_followed_is_not_explained(share: float, verdict: str, monke
     assert found.verdict == verdict
     assert [effect.name for effect in found.effects] == ["magnetization_strength"]
     assert found.gap.followed == share
+    assert found.failings == ((Failing("the path"),) if verdict == "unexplained" else ())
     assert json.loads(found.to_json())["gap"]["followed"] == share
+
+
+def test_what_is_not_foretold_is_told_as_that(monkeypatch: pytest.MonkeyPatch) -> None:
+    dataset = measure(plan(PLANS[:3]), (MagnetizationStrength(factor=0.7),))
+    monkeypatch.setattr(_Conclusion, "foretold", lambda _self, _contender: False)
+    found = diagnose(dataset, effects=["magnetization_strength"])
+    assert found.verdict == "unexplained"
+    assert found.failings == (Failing("trials left out"),)
 
 
 def test_without_effects_nothing_is_followed() -> None:

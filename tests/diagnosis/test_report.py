@@ -194,10 +194,15 @@ def test_headings_across_half_a_turn_are_drawn_near_each_other() -> None:
     # No line goes across the panel.
     assert np.isnan(dashed).tolist() == [False, False, True, False]
     assert np.nanmax(np.abs(np.diff(solid))) < 180.0
+    # Of an axis half a turn is all.
+    axis = Overlay("f15", np.arange(1.0), {"heading": [-89.5]}, {"heading": [89.0]}, {"heading": [89.0]}, {}, 180.0)
+    measured = plots.plot_overlay_channel(axis, "heading", Figure().subplots()).lines[0]
+    assert np.asarray(measured.get_ydata()).tolist() == [90.5]
 
 
-def test_the_numbers_under_an_overlay_are_those_of_its_lines(page: str) -> None:
-    assert "34.2 σ with a perfect sensor, 34.0 σ nominal (dashed), 1.2 σ with the effects (solid)" in page
+def test_under_an_overlay_stands_what_the_sensor_and_the_effects_leave_of_it(page: str) -> None:
+    assert "34.2 σ with a perfect sensor, 34.0 σ with the sensor refitted, 1.2 σ with the effects" in page
+    assert "1.2 σ with the effects" not in report_html(small(verdict="unexplained", effects=(), chosen=()))
 
 
 def test_the_last_gap_is_named_by_what_it_is_of() -> None:

@@ -78,12 +78,12 @@ def _run(
 @blind_app.command("repeat")
 def _repeat(
     directory: _Directory,
-    count: Annotated[int, typer.Option(help="How many of up to 12 trials, and of more.")] = 5,
+    count: Annotated[int, typer.Option(help="How many of them.")] = 5,
     threads: Annotated[int, typer.Option(help="Threads of a diagnosis.")] = 4,
 ) -> None:
     """Diagnose the datasets that took longest again, one after another: for their time, and for the same answer.
 
-    Those with up to 12 trials, whose time has to hold, then those with more.
+    Those with so few trials that their time has to hold, and as many of those with more.
 
     \b
     Examples:

@@ -8,6 +8,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
+from ..dataset import load
 from ..errors import InputError, show
 from .answer import Answer, seal
 from .forms import law_of
@@ -129,11 +130,12 @@ def _record(folder: Path, salt: object, answer: object, answers: Path) -> Record
         seconds=run.get("seconds"),
         threads=run.get("threads", 1),
         version=run.get("version"),
-        repeated=_repeated(read_repeat(folder)),
+        repeated=_repeated(folder),
     )
 
 
-def _repeated(table: Mapping[str, Any] | None) -> Repeated | None:
+def _repeated(folder: Path) -> Repeated | None:
+    table = read_repeat(folder)
     if table is None:
         return None
     return Repeated(
@@ -142,7 +144,7 @@ def _repeated(table: Mapping[str, Any] | None) -> Repeated | None:
         threads=table["threads"],
         cores=table["cores"],
         same=table["same"],
-        trials=table.get("trials"),
+        trials=len(load(folder).trials),
     )
 
 

@@ -28,8 +28,8 @@ def repeat(
 ) -> dict[str, bool]:
     """Diagnose the datasets that took longest again, nothing beside them, and write ``repeat.json`` to each.
 
-    Longest is by the processors' time, or on the wall where `run` has not noted that, of those with up to 12 trials,
-    whose time has to hold; and of those with more.
+    Longest is by the processors' time, or on the wall where `run` has not noted that, of those with up to
+    `TRIALS` trials, whose time has to hold; and of those with more.
 
     Parameters
     ----------
@@ -101,8 +101,7 @@ def _again(folder: Path, threads: int) -> bool:
     from ..diagnosis import diagnose
 
     start, worked = perf_counter(), process_time()
-    dataset = load(folder)
-    text = diagnose(dataset, jobs=threads).to_json().encode()
+    text = diagnose(load(folder), jobs=threads).to_json().encode()
     same = text == (folder / DIAGNOSIS).read_bytes()
     record = {
         "format": REPEAT_FORMAT,
@@ -112,7 +111,6 @@ def _again(folder: Path, threads: int) -> bool:
         "threads": threads,
         "cores": _cores(),
         "same": same,
-        "trials": len(dataset.trials),
     }
     write_files({folder / REPEAT: (json.dumps(record) + "\n").encode()})
     return same

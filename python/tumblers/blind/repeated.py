@@ -25,7 +25,7 @@ class Repeated:
     same
         Whether it is the same, byte for byte.
     trials
-        How many the dataset has; None where that was not noted.
+        How many the dataset has.
     """
 
     seconds: float
@@ -33,12 +33,12 @@ class Repeated:
     threads: int
     cores: int | None
     same: bool
-    trials: int | None = None
+    trials: int
 
     @property
     def is_timed(self) -> bool:
-        """Whether its time has to hold: the dataset has no more than `TRIALS` trials, as far as was noted."""
-        return self.trials is None or self.trials <= TRIALS
+        """Whether its time has to hold: the dataset has no more than `TRIALS` trials."""
+        return self.trials <= TRIALS
 
     def seconds_on(self, cores: int) -> float | None:
         """Return how long it takes on so many cores, s; None where nobody can say.

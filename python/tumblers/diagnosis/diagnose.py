@@ -150,14 +150,14 @@ class _Conclusion:
         nominal = self.held_out(self.attribution.nominal)
         return is_foretold(self.fitter, nominal, self.held_out(contender), gap, contender)
 
-    def failings(self, chosen: Contender) -> tuple[Failing, ...]:
-        """Return what keeps a contender from explaining the data."""
-        found = failings(self.comparison, chosen.residual, fitted=bool(chosen.names))
-        if not chosen.names:
-            return found
-        if not self.foretold(chosen):
-            found = (*found, Failing("trials left out"))
-        return found if followed(self.fitter, chosen) >= LEAST_FOLLOWED else (*found, Failing("the path"))
+    def failings(self, chosen: Contender, nearer: float | None) -> tuple[Failing, ...]:
+        """Return what keeps a contender from explaining the data, `nearer` being how much its own run follows them."""
+        found = list(failings(self.comparison, chosen.residual, fitted=bool(chosen.names)))
+        if chosen.names and not self.foretold(chosen):
+            found.append(Failing("trials left out"))
+        if nearer is not None and nearer < LEAST_FOLLOWED:
+            found.append(Failing("the path"))
+        return tuple(found)
 
     def measure(self) -> list[Contender]:
         """Return the likeliest contenders, what they say of trials left out being known."""
@@ -196,7 +196,7 @@ class _Conclusion:
             gap = shrink(self.fitter, nominal, self.seed)
         if chosen.names:
             gap = replace(gap, followed=followed(self.fitter, chosen))
-        failing = self.failings(chosen) if verdict == "unexplained" else ()
+        failing = self.failings(chosen, gap.followed) if verdict == "unexplained" else ()
         tied = ties(comparison, attribution, chosen, lambda other: self._lead(chosen, other))
 
         estimates, shown = self._estimates(chosen, tied), overlays(self.fitter, nominal, self.held_out(chosen), chosen)
@@ -401,6 +401,8 @@ def _assumptions(dataset: Dataset, comparison: Comparison, attribution: Attribut
         f"Tried were {', '.join(tried)}." if tried else "No effect that was tried can be at work in these trials.",
         f"However strong the evidence, {100.0 * LAPSE:.0f} % of the probability belongs to all hypotheses alike; what "
         "may only say that nominal numbers are off within their tolerances gives its own to the nominal model.",
+        f"A next trial is sought among the likeliest {_RIVALS} that are tied, {_PARTIAL_RIVALS} where none of them "
+        "explains the gap.",
         f"Before anything is fitted, {100.0 * PRIOR[0]:g} % for no gap, {100.0 * PRIOR[1]:g} % for one effect (half of "
         "it where one alone is tried), "
         f"{100.0 * PRIOR[2]:g} % for two; no more than two are tried. A nominal model that fails the predictive test "

@@ -280,6 +280,8 @@ class Overlay:
         fitted.
     outcomes
         Kind of outcome to (measured, nominal, explained).
+    heading_turn_deg
+        After which a heading is the same again, °: half a turn of an axis whose ends nobody can tell apart.
     """
 
     trial: str
@@ -288,6 +290,7 @@ class Overlay:
     nominal: Mapping[str, Floats]
     explained: Mapping[str, Floats]
     outcomes: Mapping[str, tuple[float, float, float]]
+    heading_turn_deg: float = 360.0
 
 
 @dataclass(frozen=True)

@@ -67,6 +67,7 @@ def overlays(fitter: Fitter, nominal: HeldOut, chosen: HeldOut, contender: Conte
                     for kind, value in noted.items()
                     if value is not None
                 },
+                heading_turn_deg=float(np.degrees(seen.heading_turn)),
             )
         )
     return tuple(made)

@@ -22,7 +22,6 @@ _CHANNELS = {
     "tilt": ("tilt (°)", 1.0),
     "heading": ("heading (°)", 1.0),
 }
-_TURN_DEG = 360.0
 # As many dots as can be told apart.
 _MOST_DOTS = 150
 _CHANNEL_INCHES, _FRAME_INCHES = 1.15, 0.85
@@ -59,23 +58,25 @@ def plot_overlay_channel(overlay: Overlay, channel: str, ax: Axes | None = None)
             values = factor * np.asarray(paths[channel], dtype=float)
             if channel == "heading":
                 # A line across the whole panel is no motion.
-                values = np.where(np.abs(np.diff(values, prepend=values[:1])) > 0.5 * _TURN_DEG, np.nan, values)
+                values = np.where(
+                    np.abs(np.diff(values, prepend=values[:1])) > 0.5 * overlay.heading_turn_deg, np.nan, values
+                )
             ax.plot(overlay.time_s, values, color=colour, linestyle=dashes, linewidth=1.3, label=name)
     ax.set_ylabel(label)
     return ax
 
 
 def _turned(overlay: Overlay) -> Overlay:
-    """Return an overlay whose headings are those within half a turn of the nominal ones: 179° and -179° are near."""
+    """Return an overlay whose headings are those nearest to the nominal ones: 179° and -179° are near."""
     if "heading" not in overlay.nominal:
         return overlay
-    nominal = np.asarray(overlay.nominal["heading"], dtype=float)
+    nominal, turn = np.asarray(overlay.nominal["heading"], dtype=float), overlay.heading_turn_deg
 
     def near(paths: Mapping[str, Floats]) -> Mapping[str, Floats]:
         if "heading" not in paths:
             return paths
         away = np.asarray(paths["heading"], dtype=float) - nominal
-        return {**paths, "heading": nominal + away - _TURN_DEG * np.round(away / _TURN_DEG)}
+        return {**paths, "heading": nominal + away - turn * np.round(away / turn)}
 
     return replace(overlay, measured=near(overlay.measured), explained=near(overlay.explained))
 

@@ -132,7 +132,8 @@ def _caption(diagnosis: Diagnosis, trial: str) -> str:
     gap = ""
     if values is not None:
         perfect, refitted, after = map(sigmas, values)
-        gap = f": {perfect} σ with a perfect sensor, {refitted} σ nominal (dashed), {after} σ with the effects (solid)"
+        gap = f": {perfect} σ with a perfect sensor, {refitted} σ with the sensor refitted"
+        gap += f", {after} σ with the effects" if diagnosis.effects else ""
     return condition_of(diagnosis.dataset.trial(trial)) + gap
 
 

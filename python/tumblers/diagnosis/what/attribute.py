@@ -287,7 +287,7 @@ def _may_be_tolerated(fitter: Fitter, fit: Fit, dispersion: float) -> bool:
 
 def _place_cost(names: Sequence[str], order: Sequence[str]) -> float:
     """Return what a hypothesis's place in the catalogue costs it, ln."""
-    return _PER_PLACE * sum(order.index(name) for name in names if name in order)
+    return _PER_PLACE * sum(order.index(name) for name in names)
 
 
 def _seen(fitter: Fitter, contender: Contender, first: bool) -> Contender:

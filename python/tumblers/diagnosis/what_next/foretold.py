@@ -43,14 +43,11 @@ class Said:
         What would be measured with each, shape (n, kinds).
     events
         What happens, shape (n,): `CLIMBS` on a slope, `STAYS` in view, `SLIDES` or `RUNS` out of it.
-    climbs
-        The probability that a slope is noted as climbed, shape (n,).
     """
 
     shares: Floats
     values: Floats
     events: NDArray[np.int8]
-    climbs: Floats
 
     def share(self, event: int) -> float:
         """Return the share of the draws with an event."""
@@ -102,30 +99,29 @@ def foretell(
     swings = 0.0
     said = []
     for mine in run:
-        values, events, climbs = [], [], []
+        values, events = [], []
         for _, path in mine:
             if path is None:
                 continue
             if isinstance(field, RotatingField):
                 ends, _ = path.at(np.array([0.0, time]))
                 speed, drift = (float(ends[1, k] - ends[0, k]) / time for k in (1, 0))
-                chance = exp(-0.5 * reached(speed / level, True) ** 2)
-                up = CLIMBS if option.incline_deg > 0.0 and chance > 0.5 else STAYS
+                # What is noted as a climb more often than not.
+                noted = exp(-0.5 * reached(speed / level, True) ** 2) > 0.5
+                up = CLIMBS if option.incline_deg > 0.0 and noted else STAYS
                 gone = abs(speed) > _GONE * level
                 values.append([speed, drift])
                 events.append((SLIDES if speed * option.incline_deg < 0.0 else RUNS) if gone else up)
-                climbs.append(chance)
             else:
                 rest = np.linspace((1.0 - REST_SHARE) * time, time, 16)
                 tilts = np.degrees(tilt_of(body_axis(path.at(rest)[1])))
                 values.append([float(np.mean(tilts))])
                 events.append(STAYS)
-                climbs.append(0.0)
                 swings = max(swings, float(np.std(tilts)))
         if not values:
             return None
         times = np.array([count for count, path in mine if path is not None], dtype=np.float64)
-        said.append(Said(times / times.sum(), np.array(values), np.array(events, dtype=np.int8), np.array(climbs)))
+        said.append(Said(times / times.sum(), np.array(values), np.array(events, dtype=np.int8)))
     if isinstance(field, RotatingField):
         noise = np.hypot(np.sqrt(2.0) * dataset.sensor.position_noise_m / time, _REPEATS * level)
         return Foretold(("mean_speed_m_per_s", "drift_m_per_s"), np.full(2, noise), tuple(said))

@@ -7,9 +7,9 @@ from math import isfinite
 from ...dataset import likely_slips
 from ...effects.parameter import Nuisance
 from ..diagnosis import Diagnosis
-from ..gap.predictive import MOST_EXPLAINED
 from ..plausible import neutral_values, plausible_ranges, turning_keys
 from ..quantity import percent, sigmas
+from ..result import RankedHypothesis
 from ..what.tolerated import is_tolerated
 from .phrase import meaning_of, title_of
 
@@ -79,19 +79,25 @@ def _of_effects(diagnosis: Diagnosis) -> list[str]:
             "the substrate is stated without adhesion, and what multiplies it (adhesion coefficient, line contact "
             "adhesion) cannot be tried: where the robot may stick, state adhesion_N_per_m2."
         )
-    if diagnosis.verdict == "unexplained":
-        fits = [ranked for ranked in diagnosis.ranking if len(ranked.effects) > 1 and ranked.gap**2 <= MOST_EXPLAINED]
-        closing = next((ranked for ranked in fits if set(ranked.effects) != {e.name for e in diagnosis.effects}), None)
-        if closing is not None:
-            pair = " with ".join(map(title_of, closing.effects))
-            said.append(
-                f"{pair} would leave {sigmas(closing.gap)} σ where it is fitted "
-                f"(probability {percent(closing.probability)}): two effects have to be clearly likelier than one, for "
-                "what acts in a form of its own looks like two."
-            )
+    if (closing := _pair_that_would(diagnosis)) is not None:
+        pair = " with ".join(map(title_of, closing.effects))
+        said.append(
+            f"{pair} would leave {sigmas(closing.gap)} σ where they are fitted "
+            f"(probability {percent(closing.probability)}): two effects have to be clearly likelier than one, for what "
+            "acts in a form of its own looks like two."
+        )
     if diagnosis.verdict == "unexplained" and diagnosis.effects:
         said.append("the partial cause may be wrong altogether: it only follows the data better than the others.")
     return said
+
+
+def _pair_that_would(diagnosis: Diagnosis) -> RankedHypothesis | None:
+    """Return the likeliest pair that would leave little enough over all trials, where one effect leaves too much."""
+    allowed = next((failing.allowed for failing in diagnosis.failings if failing.test == "all trials"), None)
+    if allowed is None or len(diagnosis.effects) != 1:
+        return None
+    pairs = (ranked for ranked in diagnosis.ranking if len(ranked.effects) > 1 and ranked.probability > 0.0)
+    return next((pair for pair in pairs if pair.gap**2 <= allowed), None)
 
 
 def _of_trials(diagnosis: Diagnosis) -> list[str]:

@@ -6,13 +6,12 @@ from math import isfinite
 
 from ...field import RotatingField
 from ..diagnosis import Diagnosis
-from ..gap.predictive import MOST_EXPLAINED
 from ..how_far.followed import LEAST_FOLLOWED
 from ..quantity import percent, sigmas
 from ..result import Gap
 from .phrase import Phrase, phrase_of
 
-__all__ = ["CLOSED", "ONE_PERCENT", "gap_words", "headline", "only_uncertain"]
+__all__ = ["CLOSED", "ONE_PERCENT", "gap_words", "headline", "nearer_words", "only_uncertain"]
 
 # Below this share of the gap an effect is not foretold by trials that were fitted without it.
 _FORETOLD = 0.05
@@ -57,7 +56,7 @@ def headline(diagnosis: Diagnosis) -> str:
             f"Unexplained: {left}. It would be within what the computed motion is uncertain by if {partial}; but the "
             f"simulated robot itself comes {nearer} to the measured one."
         )
-    if fitted < gap.noise_floor + CLOSED and fitted**2 <= MOST_EXPLAINED:
+    if {failing.test for failing in diagnosis.failings} == {"trials left out"} and fitted < gap.noise_floor + CLOSED:
         return (
             f"Unexplained: {left}. It would close, to {gap_words(fitted)}, if {partial}; but too few trials show it to "
             "hold that against another."
@@ -126,7 +125,12 @@ def only_uncertain(diagnosis: Diagnosis) -> str:
     gap = diagnosis.gap
     if gap.followed is None or gap.followed >= LEAST_FOLLOWED or _fitted(diagnosis) >= gap.noise_floor + CLOSED:
         return ""
-    return f"only {percent(gap.followed)} nearer" if gap.followed >= ONE_PERCENT else "no nearer"
+    return nearer_words(gap.followed)
+
+
+def nearer_words(followed: float) -> str:
+    """Return how much nearer the simulated robot comes to the measured one where that is too little."""
+    return f"only {percent(followed)} nearer" if followed >= ONE_PERCENT else "no nearer"
 
 
 def _fitted(diagnosis: Diagnosis) -> float:

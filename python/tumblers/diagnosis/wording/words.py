@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from math import isfinite
 
 import numpy as np
@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from ...effects.catalogue import CATALOGUE
 from ..diagnosis import Diagnosis
-from ..quantity import handy_unit, percent, rounded, with_interval, with_sigma
-from ..result import EffectEstimate, NextTrial, Region
+from ..quantity import handy_unit, percent, rounded, sigmas, with_interval, with_sigma
+from ..result import EffectEstimate, Failing, NextTrial, Region
 from ..where.wrench_maps import SIGNIFICANT
 from .caution import cautions
 from .condition import condition_of, condition_of_table
-from .headline import CLOSED, ONE_PERCENT, gap_words, headline, only_uncertain
+from .headline import CLOSED, ONE_PERCENT, gap_words, headline, nearer_words, only_uncertain
 from .phrase import meaning_of, title_of, unit_of
 
 __all__ = [
@@ -39,7 +39,9 @@ _WIDTH = 100
 _LABEL = 13
 # Share of the trials from which on they are counted rather than listed.
 _SPREAD = 0.5
-_MOST_REGIONS, _MOST_VALUES, _MOST_RULED_OUT = 3, 4, 6
+_MOST_REGIONS, _MOST_VALUES, _MOST_RULED_OUT, _MOST_FAILING = 3, 4, 6, 3
+# Gaps below this are held against what is allowed, sigmas.
+_FINELY = 10.0
 # A trial that tells so many times as much is worth a lab's trouble.
 _MUCH_MORE = 2.0
 _WRENCH = (("force", "N", 0), ("torque", "N m", 3))
@@ -230,23 +232,37 @@ def _in_parts(diagnosis: Diagnosis) -> str:
 
 def _failings(diagnosis: Diagnosis) -> Iterator[str]:
     """Return what keeps the best hypothesis from explaining the data."""
-    best, fitted = (
-        ("with the partial cause", " where it is fitted") if diagnosis.effects else ("by the nominal model", "")
-    )
+    best = "with the partial cause" if diagnosis.effects else "by the nominal model"
+    off = [failing for failing in diagnosis.failings if failing.test == "a trial"]
     for failing in diagnosis.failings:
-        trials = ", ".join(failing.trials)
-        if failing.test == "trials left out":
-            yield "trials that are left out of the fit are not foretold by it."
-        elif failing.test == "the path":
-            yield "the simulated robot itself comes hardly nearer to the measured one."
+        if failing.test == "all trials":
+            yield f"{_root(failing.left)} σ are left {best} over all trials, {_root(failing.allowed)} σ count as noise."
+        elif failing.test == "a trial" and failing is off[0]:
+            yield f"too much is left {best} in {_those(off)}."
         elif failing.test == "an outcome":
-            yield f"the outcome of {trials} is contradicted {best}."
-        elif failing.left is not None and failing.allowed is not None:
-            there = f"in {trials}" if trials else "over all trials"
-            yield (
-                f"{there} a mean square of {failing.left:.3g} is left {best}{fitted}; what is right leaves "
-                f"{failing.allowed:.3g} at most."
-            )
+            yield f"the outcome of {', '.join(failing.trials)} is contradicted {best}."
+        elif failing.test == "trials left out" and diagnosis.gap.held_out_trials:
+            yield "trials that are left out of the fit are not foretold by the others."
+        elif failing.test == "trials left out":
+            yield "no trial could be left out of the fit, to see whether the others foretell it."
+        elif failing.test == "the path" and diagnosis.gap.followed is not None:
+            yield f"the simulated robot itself comes {nearer_words(diagnosis.gap.followed)} to the measured one."
+
+
+def _those(off: Sequence[Failing]) -> str:
+    """Return the trials that are farthest off with what is left of them, and what counts as noise."""
+    words = [
+        f"{failing.trials[0]} ({_root(failing.left)} σ, {_root(failing.allowed)} σ count as noise)"
+        for failing in sorted(off, key=lambda failing: -(failing.left or 0.0) / (failing.allowed or 1.0))
+    ]
+    more = len(words) - _MOST_FAILING
+    return ", ".join(words[:_MOST_FAILING]) + (f" and {more} more" if more > 0 else "")
+
+
+def _root(mean_square: float | None) -> str:
+    """Return a gap, told finely enough to be held against another."""
+    gap = float("nan") if mean_square is None else mean_square**0.5
+    return f"{gap:.2f}" if gap < _FINELY else sigmas(gap)
 
 
 def _missing(diagnosis: Diagnosis) -> Iterator[str]:
