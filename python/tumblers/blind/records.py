@@ -8,7 +8,6 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from ..dataset import load
 from ..errors import InputError, show
 from .answer import Answer, seal
 from .forms import law_of
@@ -130,12 +129,11 @@ def _record(folder: Path, salt: object, answer: object, answers: Path) -> Record
         seconds=run.get("seconds"),
         threads=run.get("threads", 1),
         version=run.get("version"),
-        repeated=_repeated(folder),
+        repeated=_repeated(read_repeat(folder), trials=len(truth.strength_by_trial)),
     )
 
 
-def _repeated(folder: Path) -> Repeated | None:
-    table = read_repeat(folder)
+def _repeated(table: Mapping[str, Any] | None, trials: int) -> Repeated | None:
     if table is None:
         return None
     return Repeated(
@@ -144,7 +142,7 @@ def _repeated(folder: Path) -> Repeated | None:
         threads=table["threads"],
         cores=table["cores"],
         same=table["same"],
-        trials=len(load(folder).trials),
+        trials=trials,
     )
 
 
