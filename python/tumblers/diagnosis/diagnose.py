@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict, replace
-from math import pi
+from math import log, pi
 from time import perf_counter
 
 import numpy as np
@@ -55,8 +55,8 @@ _MEASURED, _PROBABLE = 3, 0.02
 _RIVALS, _PARTIAL_RIVALS, _SAMPLES = 6, 3, 24
 # What a rival weighs at least in the information of a trial: tied by likelihood alone, it may be next to improbable.
 _LEAST_WEIGHT = 0.02
-# ln of the odds against an effect that is ruled out.
-_RULED_OUT = 4.6
+# ln of the odds against an effect that is ruled out: those against what has failed the predictive test.
+_RULED_OUT = -log(REFUSED)
 
 
 def diagnose(
