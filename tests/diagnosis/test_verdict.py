@@ -32,7 +32,12 @@ def compared(*tracked: int, alike: float = 1.0) -> SimpleNamespace:
         for count in tracked
     )
     made = SimpleNamespace(
-        readers=floors, sizes=(COUNT,) * len(floors), count=COUNT * len(floors), floors=floors, alike=alike
+        readers=floors,
+        sizes=(COUNT,) * len(floors),
+        count=COUNT * len(floors),
+        floors=floors,
+        alike=alike,
+        dataset=SimpleNamespace(trials=tuple(SimpleNamespace(id=f"up{k}") for k in range(len(floors)))),
     )
     made.rough = Comparison.rough.fget(made)  # type: ignore[attr-defined]
     return made
@@ -84,7 +89,6 @@ def test_what_is_to_explain_a_gap_leaves_no_more_than_right_effects_do(left: flo
 )
 def test_what_fails_is_told_where_the_test_is_failed(left: float, fitted: bool, failing: list[str]) -> None:
     comparison, residual = compared(COUNT), contender("viscous_drag", left, 0.8).residual
-    comparison.dataset = SimpleNamespace(trials=(SimpleNamespace(id="up"),))
     found = failings(comparison, residual, fitted)  # type: ignore[arg-type]
     assert [one.test for one in found] == failing
     passes = is_explained if fitted else is_right
@@ -97,10 +101,9 @@ def test_what_fails_is_told_where_the_test_is_failed(left: float, fitted: bool, 
 
 def test_an_outcome_that_is_contradicted_is_told() -> None:
     comparison, residual = compared(COUNT - 1), contender("viscous_drag", 1.0, 0.8).residual
-    comparison.dataset = SimpleNamespace(trials=(SimpleNamespace(id="up"),))
     residual.trials[0][-1] = 9.0
     found = failings(comparison, residual, True)  # type: ignore[arg-type]
-    assert [(one.test, one.trials) for one in found] == [("an outcome", ("up",))]
+    assert [(one.test, one.trials) for one in found] == [("an outcome", ("up0",))]
 
 
 def test_no_effect_is_farther_behind_for_its_place_in_the_catalogue() -> None:

@@ -57,14 +57,12 @@ def mean_square(comparison: Comparison, residual: Residual) -> float:
 
 def is_right(comparison: Comparison, residual: Residual) -> bool:
     """Whether a hypothesis passes the test."""
-    if not np.all(mean_squares(residual) <= _worst(np.asarray(comparison.sizes))):
-        return False
-    return _leaves_at_most(_RIGHT, comparison, residual) and not contradicted(comparison, residual).any()
+    return not failings(comparison, residual, fitted=False)
 
 
 def is_explained(comparison: Comparison, residual: Residual) -> bool:
     """Whether effects that were fitted pass the test, and leave no more than right ones do."""
-    return is_right(comparison, residual) and _leaves_at_most(MOST_EXPLAINED, comparison, residual)
+    return not failings(comparison, residual, fitted=True)
 
 
 def failings(comparison: Comparison, residual: Residual, fitted: bool) -> tuple[Failing, ...]:
@@ -77,13 +75,13 @@ def failings(comparison: Comparison, residual: Residual, fitted: bool) -> tuple[
     residual
         How wrong the hypothesis is.
     fitted
-        Whether it has effects that were fitted (`is_explained`), or is the nominal model (`is_right`).
+        Whether it is to leave no more than right effects that were fitted do.
     """
     ids = [trial.id for trial in comparison.dataset.trials]
     made = []
-    over_all, most = mean_square(comparison, residual), MOST_EXPLAINED if fitted else _RIGHT
-    if not _leaves_at_most(most, comparison, residual):
-        made.append(Failing("all trials", left=over_all, allowed=_allowed(most, comparison)))
+    left, allowed = mean_square(comparison, residual), _allowed(MOST_EXPLAINED if fitted else _RIGHT, comparison.count)
+    if not left <= allowed:
+        made.append(Failing("all trials", left=left, allowed=allowed))
     squares, worst = mean_squares(residual), _worst(np.asarray(comparison.sizes))
     made += [
         Failing("a trial", (ids[i],), float(squares[i]), float(worst[i])) for i in np.flatnonzero(~(squares <= worst))
@@ -132,14 +130,10 @@ def leaves_a_gap(values: NDArray[np.float64]) -> bool:
     return robust_cost(values) / len(values) > _WANTING
 
 
-def _leaves_at_most(many: float, comparison: Comparison, residual: Residual) -> bool:
-    """Return whether the mean square is no more than is allowed of many numbers, or than noise seldom gives."""
-    return mean_square(comparison, residual) <= _allowed(many, comparison)
-
-
-def _allowed(many: float, comparison: Comparison) -> float:
-    count = max(comparison.count, 1)
-    return max(many, float(chi2.isf(_SELDOM, count)) / count)
+def _allowed(many: float, count: int) -> float:
+    """Return the most of a mean square: what is allowed of many numbers, or of few what noise seldom gives."""
+    n = max(count, 1)
+    return max(many, float(chi2.isf(_SELDOM, n)) / n)
 
 
 def _worst(count: NDArray[np.int_]) -> NDArray[np.float64]:
