@@ -11,7 +11,7 @@ import pytest
 
 from tumblers import diagnose
 from tumblers.dataset import Outcome
-from tumblers.diagnosis.diagnose import _Conclusion
+from tumblers.diagnosis.conclusion import Conclusion
 from tumblers.diagnosis.fitting.fitter import Fitter
 from tumblers.diagnosis.fitting.hypothesis import Hypothesis
 from tumblers.diagnosis.gap import built_floors
@@ -103,7 +103,7 @@ def test_the_headline_says_that_what_would_close_the_gap_follows_nothing() -> No
 @pytest.mark.parametrize(("share", "verdict"), [(LEAST_FOLLOWED - 0.01, "unexplained"), (LEAST_FOLLOWED, "explained")])
 def test_what_is_not_followed_is_not_explained(share: float, verdict: str, monkeypatch: pytest.MonkeyPatch) -> None:
     dataset = measure(plan(PLANS[:3]), (MagnetizationStrength(factor=0.7),))
-    monkeypatch.setitem(_Conclusion.stands.__globals__, "followed", lambda _fitter, _contender: share)
+    monkeypatch.setitem(Conclusion.stands.__globals__, "followed", lambda _fitter, _contender: share)
     found = diagnose(dataset, effects=["magnetization_strength"])
     assert found.verdict == verdict
     assert [effect.name for effect in found.effects] == ["magnetization_strength"]
@@ -114,7 +114,7 @@ def test_what_is_not_followed_is_not_explained(share: float, verdict: str, monke
 
 def test_what_is_not_foretold_is_told_as_that(monkeypatch: pytest.MonkeyPatch) -> None:
     dataset = measure(plan(PLANS[:3]), (MagnetizationStrength(factor=0.7),))
-    monkeypatch.setattr(_Conclusion, "foretold", lambda _self, _contender: False)
+    monkeypatch.setattr(Conclusion, "foretold", lambda _self, _contender: False)
     found = diagnose(dataset, effects=["magnetization_strength"])
     assert found.verdict == "unexplained"
     assert found.failings == (Failing("trials left out"),)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from tumblers import diagnose
 from tumblers.dataset import Outcome
-from tumblers.diagnosis.diagnose import _Conclusion
+from tumblers.diagnosis.conclusion import Conclusion
 from tumblers.diagnosis.fitting.fitter import Fitter
 from tumblers.diagnosis.fitting.hypothesis import Hypothesis
 from tumblers.diagnosis.gap.comparison import Comparison, Residual
@@ -219,11 +219,11 @@ def test_what_trials_left_out_refuse_is_named_after_a_tied_one(monkeypatch: pyte
     before = diagnose(dataset, effects=names, jobs=1)
     first = before.ranking[0].effects
     (other,) = {*names} - {*first}
-    monkeypatch.setattr(_Conclusion, "stands", lambda self, contender: contender.names != first)
+    monkeypatch.setattr(Conclusion, "stands", lambda self, contender: contender.names != first)
     after = diagnose(dataset, effects=names, jobs=1)
     assert [effect.name for effect in after.effects] == [other]
     assert after.ranking[0].effects == (other,)
     assert after.ranking[1].log_evidence == pytest.approx(before.ranking[0].log_evidence + log(REFUSED), abs=1e-6)
     assert any("refuse" in said for said in after.assumptions)
-    monkeypatch.setattr(_Conclusion, "stands", lambda self, contender: False)
+    monkeypatch.setattr(Conclusion, "stands", lambda self, contender: False)
     assert diagnose(dataset, effects=names, jobs=1).ranking[0].effects == first
