@@ -61,6 +61,21 @@ def test_the_determinant_is_that_of_the_covariances() -> None:
         assert floor.outcome_log_determinant == pytest.approx(outcomes, rel=1e-12)
 
 
+def test_the_deviation_is_the_root_of_the_covariances_diagonal() -> None:
+    comparison = compared(with_outcomes())
+    floor, seen = comparison.floors[0], comparison.readers[0].observed
+    for name, whiten in floor.whiten.items():
+        deviation, found = floor.deviation(name), seen.found(name)
+        assert np.isnan(deviation).tolist() == (~found).tolist()
+        covariance = np.linalg.inv(whiten.T @ whiten)
+        assert_allclose(deviation[found] ** 2, np.diag(covariance), rtol=1e-6)
+        # What the step and the tolerances leave open comes to the sensor's.
+        assert np.all(deviation[found] >= seen.noise[name] * (1.0 - 1e-9))
+    comparison.take_noise_of((), shares=[0.0, 0.0])
+    alone = comparison.floors[0].deviation("x")
+    assert_allclose(alone[seen.found("x")], seen.noise["x"], rtol=1e-9)
+
+
 def test_without_the_changes_the_determinant_is_that_of_the_sensor() -> None:
     comparison = compared(measure(plan(PLANS[:2], duration_s=0.3)))
     all_of_it = [floor.log_determinant for floor in comparison.floors]

@@ -200,6 +200,18 @@ def test_headings_across_half_a_turn_are_drawn_near_each_other() -> None:
     assert np.asarray(measured.get_ydata()).tolist() == [90.5]
 
 
+def test_the_band_of_an_overlay_is_two_deviations_to_either_side_and_does_not_stretch_the_panel() -> None:
+    line, noise = np.array([0.0, 1e-6, 2e-6]), np.array([1e-6, np.nan, 1.0])
+    overlay = Overlay("f15", np.arange(3.0), {"y": line}, {"y": line}, {"y": line}, {}, noise={"y": noise})
+    ax = plots.plot_overlay_channel(overlay, "y", Figure().subplots())
+    (band,) = ax.collections
+    corners = np.concatenate([path.vertices for path in band.get_paths()])
+    assert {-2.0, 2.0} <= {*np.round(corners[corners[:, 0] == 0.0, 1], 9)}
+    assert not np.any(corners[:, 0] == 1.0)
+    assert ax.get_ylim()[1] < 3.0
+    assert not plots.plot_overlay_channel(replace(overlay, noise={}), "y", Figure().subplots()).collections
+
+
 def test_under_an_overlay_stands_what_the_sensor_and_the_effects_leave_of_it(page: str) -> None:
     assert "34.2 σ with a perfect sensor, 34.0 σ with the sensor refitted, 1.2 σ with the effects" in page
     assert "1.2 σ with the effects" not in report_html(small(verdict="unexplained", effects=(), chosen=()))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
 import numpy as np
@@ -282,6 +282,9 @@ class Overlay:
         Kind of outcome to (measured, nominal, explained).
     heading_turn_deg
         After which a heading is the same again, °: half a turn of an axis whose ends nobody can tell apart.
+    noise
+        By channel, one standard deviation of what counts as noise at each frame, in the channel's unit, shape (n,), NaN
+        where lost: the sensor's, and what step and tolerances leave open.
     """
 
     trial: str
@@ -291,6 +294,7 @@ class Overlay:
     explained: Mapping[str, Floats]
     outcomes: Mapping[str, tuple[float, float, float]]
     heading_turn_deg: float = 360.0
+    noise: Mapping[str, Floats] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -127,6 +127,19 @@ class Floor:
         parts = [(np.arange(len(kept)) < frames)[kept] for kept in self.valid.values()]
         return np.concatenate([*parts, np.zeros(len(self.outcome_scale), dtype=bool)])
 
+    def deviation(self, channel: str) -> Floats:
+        """Return the root of Σ's diagonal along a channel, m or rad, shape (n,), NaN where lost.
+
+        Parameters
+        ----------
+        channel
+            One that was measured.
+        """
+        out = np.full(len(self.valid[channel]), np.nan)
+        # Σ = L Lᵀ, and L⁻¹ is what whitens.
+        out[self.valid[channel]] = np.linalg.norm(np.linalg.inv(self.whiten[channel]), axis=1)
+        return out
+
     def beginning(self, frames: int) -> Floor:
         """Return the noise of the first frames, without outcomes; what sums a trial up stays that of all of it.
 

@@ -18,6 +18,9 @@ __all__ = ["overlays"]
 
 Floats = NDArray[np.float64]
 
+# Of an axis that stands, so that what its heading may be has an end.
+_LEAST_COSINE = 0.02
+
 
 def overlays(fitter: Fitter, nominal: HeldOut, chosen: HeldOut, contender: Contender) -> tuple[Overlay, ...]:
     """Return what was measured and foretold in each trial, by fits that have not seen it.
@@ -68,6 +71,7 @@ def overlays(fitter: Fitter, nominal: HeldOut, chosen: HeldOut, contender: Conte
                     if value is not None
                 },
                 heading_turn_deg=float(np.degrees(seen.heading_turn)),
+                noise={name: _spread(name, comparison.floors[i].deviation(name), lines[1]) for name in measured},
             )
         )
     return tuple(made)
@@ -78,6 +82,14 @@ def _shown(name: str, values: Floats, heading_turn: float) -> Floats:
         # Within half of what it comes back to itself after.
         return np.degrees(values - heading_turn * np.rint(values / heading_turn))
     return np.degrees(values) if name == "tilt" else values
+
+
+def _spread(name: str, deviation: Floats, line: dict[str, Floats]) -> Floats:
+    """Return one standard deviation as it is shown: of an axis that stands upright the heading is anything."""
+    if name == "heading":
+        upright = np.maximum(np.cos(np.radians(line["tilt"])), _LEAST_COSINE)
+        return np.asarray(np.degrees(deviation / upright))
+    return np.degrees(deviation) if name == "tilt" else deviation
 
 
 def _read(comparison: Comparison, trial: int, path: Path, held: HeldOut) -> dict[str, Floats]:

@@ -24,11 +24,15 @@ _CHANNELS = {
 }
 # As many dots as can be told apart.
 _MOST_DOTS = 150
-_CHANNEL_INCHES, _FRAME_INCHES = 1.15, 0.85
+_CHANNEL_INCHES, _FRAME_INCHES = 1.15, 1.0
+# Within so many standard deviations of the noise are 95 % of what a right model is measured as.
+_BAND_SIGMAS = 2.0
 
 
 def plot_overlay_channel(overlay: Overlay, channel: str, ax: Axes | None = None) -> Axes:
     """Plot one channel of a trial over time (s): measured, nominal, and with the effects of a fit that has not seen it.
+
+    The band about the last is what counts as noise, two standard deviations to either side.
 
     Parameters
     ----------
@@ -62,8 +66,26 @@ def plot_overlay_channel(overlay: Overlay, channel: str, ax: Axes | None = None)
                     np.abs(np.diff(values, prepend=values[:1])) > 0.5 * overlay.heading_turn_deg, np.nan, values
                 )
             ax.plot(overlay.time_s, values, color=colour, linestyle=dashes, linewidth=1.3, label=name)
+            if name == "with the effects" and channel in overlay.noise:
+                _band(ax, overlay, channel, values)
     ax.set_ylabel(label)
     return ax
+
+
+def _band(ax: Axes, overlay: Overlay, channel: str, values: Floats) -> None:
+    """Shade what noise makes of a line; where nothing was measured it has a gap, and it does not stretch the panel."""
+    wide = _BAND_SIGMAS * _CHANNELS.get(channel, ("", 1.0))[1] * np.asarray(overlay.noise[channel], dtype=float)
+    limits = ax.get_ylim()
+    ax.fill_between(
+        overlay.time_s,
+        values - wide,
+        values + wide,
+        color=BLUE,
+        alpha=0.2,
+        linewidth=0.0,
+        label="noise, 2 sigma",
+    )
+    ax.set_ylim(limits)
 
 
 def _turned(overlay: Overlay) -> Overlay:
@@ -145,6 +167,6 @@ def plot_overlay(overlay: Overlay, figure: Figure | None = None) -> Figure:
     axes[-1].set_xlabel("time (s)")
     handles, labels = axes[0].get_legend_handles_labels()
     figure.legend(
-        handles, labels, loc="outside upper right", ncols=3, fontsize="small", frameon=False, columnspacing=1.0
+        handles, labels, loc="outside lower center", ncols=4, fontsize="small", frameon=False, columnspacing=1.0
     )
     return figure

@@ -64,7 +64,8 @@ def overlay_part(diagnosis: Diagnosis) -> str:
     )
     words = (
         f"Measured (dots), nominal (dashed) and with the effects (solid), their parameters from {fitted}; the sensor's "
-        "nuisances are fitted in both."
+        "nuisances are fitted in both. The band is what counts as noise, two standard deviations to either side: the "
+        "sensor's, and what the step and the nominal numbers' tolerances leave open."
     )
     return text(words, "soft") + pictures + table
 
