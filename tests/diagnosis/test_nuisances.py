@@ -13,8 +13,10 @@ from tumblers.diagnosis import diagnose
 from tumblers.diagnosis.fitting.hypothesis import Hypothesis
 from tumblers.diagnosis.gap.comparison import Comparison
 from tumblers.diagnosis.gap.floor import SHARED
-from tumblers.diagnosis.gap.predictive import mean_square
+from tumblers.diagnosis.gap.predictive import is_right, mean_square
 from tumblers.diagnosis.gap.simulator import Simulator
+from tumblers.diagnosis.what.attribute import attribute
+from tumblers.diagnosis.what.height_zero import with_height_zero
 from tumblers.effects import get
 from tumblers.model import Model
 
@@ -229,8 +231,10 @@ def unsure(dataset: Dataset, z_origin_tolerance_m: float) -> Dataset:
 def test_a_height_from_another_zero_in_each_trial_is_no_gap_where_it_may_be_off() -> None:
     dataset = raised(measure(plan(), clock_frames=-0.2, origin_m=2e-5))
     names = ("size_error", "friction_coefficient")
-    # To a lab that knows its height it is one.
-    assert diagnose(unsure(dataset, 0.0), effects=names, jobs=2).verdict != "no_gap"
+    # To a lab that knows its height it is one: only what passes this test is none.
+    known = unsure(dataset, 0.0)
+    comparison = Comparison(known, Simulator(known, 1))
+    assert not is_right(comparison, comparison.residual(comparison.nominal_paths))
     found = diagnose(unsure(dataset, 3e-5), effects=names, jobs=2)
     assert found.verdict == "no_gap"
     assert found.gap.after_nuisance_only < 1.1 < found.gap.before
@@ -266,9 +270,10 @@ def test_a_zero_of_the_height_is_fitted_beside_an_effect_where_it_is_off_alone(
 
 def test_a_cause_that_is_not_considered_is_no_zero_of_the_height() -> None:
     dataset = measure(plan(), (get("size_error").from_vector((1.03, 1.03)),), origin_m=2e-5)
-    found = diagnose(dataset, effects=("friction_coefficient",), jobs=2)
-    assert found.verdict == "unexplained"
-    assert found.z_origin_tolerance_m == 0.0
+    comparison = Comparison(dataset, Simulator(dataset, 2))
+    found = attribute(comparison, [get("friction_coefficient")])
+    assert not found.nominal_is_right
+    assert with_height_zero(comparison, found) is None
 
 
 @pytest.mark.parametrize("low_deg", [-90.0, 0.0])
