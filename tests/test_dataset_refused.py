@@ -60,7 +60,7 @@ REFUSED = [
     ('id = "f05"', 'id = " "', "trial[0].id", "a name of printable characters"),
     ('id = "f05"', "id = 5", "trial[0].id", "5"),
     ('id = "slope"', 'id = "f05"', "trial[1].id", "found 'f05' again, expected another id than trial[0]"),
-    ("duration_s = 4\n", "", "trial[1].duration_s", "duration_s in [trial] (trial 'slope')"),
+    ("duration_s = 4\n", "", "trial[1].duration_s", "a value for duration_s (trial 'slope')"),
     ("duration_s = 4", "duration_s = 0", "trial[1].duration_s", "greater than 0 (trial 'slope')"),
     (
         "duration_s = 2.0",

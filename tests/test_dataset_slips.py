@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import pytest
@@ -58,3 +59,53 @@ def test_a_field_from_a_table_is_looked_at_row_by_row(tmp_path: Path) -> None:
 def test_what_labs_have_is_no_slip(tmp_path: Path) -> None:
     assert likely_slips(load(write_dataset(tmp_path / "data"))) == ()
     assert likely_slips(load(EXAMPLE)) == ()
+
+
+def frames(columns: str, rows: list[str]) -> str:
+    return "\n".join([f"time_s,{columns}", *(f"{k / 60:.6f},{row}" for k, row in enumerate(rows)), ""])
+
+
+TURNS = [2.0 * math.pi * 5.0 * k / 60.0 for k in range(60)]
+
+
+@pytest.mark.parametrize(
+    ("track", "words"),
+    [
+        (frames("x_m,y_m", [f"0.024,{1e-5 * k}" for k in range(12)]), "f05 begins 0.024 m from its origin"),
+        (frames("y_m", [f"{1e-9 * k}" for k in range(12)]), "differ by 1.1e-08 m at most, less than position_noise_m"),
+        (frames("tilt_deg", [f"{math.asin(math.sin(t))}" for t in TURNS]), "tilt_deg of f05 is between -1.6 and 1.6"),
+    ],
+)
+def test_a_track_in_another_unit_or_from_another_place_is_told(tmp_path: Path, track: str, words: str) -> None:
+    (said,) = likely_slips(load(write_dataset(tmp_path / "data", track=track)))
+    assert words in said
+
+
+@pytest.mark.parametrize(
+    "track",
+    [
+        # Within the tolerance and the robot's size, and where the first frame is later than the start.
+        frames("x_m,y_m", [f"{4e-4 + 5e-6 * (k % 2)},0" for k in range(12)]),
+        "time_s,y_m\n0.5,0.02\n0.6,0.02\n",
+        # At rest to the pixel; and a body that spins flat, seen with a noise of half a degree.
+        frames("x_m,y_m", ["0,0"] * 12),
+        frames("tilt_deg", [f"{0.5 * math.sqrt(2.0) * math.erf(0.3 * (k % 13 - 6))}" for k in range(60)]),
+        frames("tilt_deg", [f"{math.degrees(math.asin(math.sin(t)))}" for t in TURNS]),
+    ],
+)
+def test_what_a_track_may_look_like_is_no_slip(tmp_path: Path, track: str) -> None:
+    assert likely_slips(load(write_dataset(tmp_path / "data", track=track))) == ()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("friction_coefficient = 0.3", "friction_coefficient = 0.3\nelectrostatic_force_N = 654", "is it in N?"),
+        ("angle_noise_deg = 1.0", "angle_noise_deg = 0.0175", "finer than a camera tells: is it in degrees?"),
+        ("incline_deg = 30.0", "incline_deg = 0.0", "is 0.03, and rolling without slip makes 0.00045"),
+    ],
+)
+def test_a_number_of_another_unit_is_told(tmp_path: Path, old: str, new: str, words: str) -> None:
+    assert old in DATASET
+    said = likely_slips(load(write_dataset(tmp_path / "data", DATASET.replace(old, new, 1))))
+    assert any(words in one for one in said)

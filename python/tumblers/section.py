@@ -45,9 +45,7 @@ def known_keys(section: str, table: Mapping[str, object], known: Iterable[str], 
             raise InputError(f"{prefix}{show(key)[1:-1]}", found, f"one of {', '.join(names)}")
     for key in required:
         if key not in table:
-            raise InputError(
-                f"{prefix}{key}", "no such key", f"{key} in [{section}]" if section else f"{key} in the file"
-            )
+            raise InputError(f"{prefix}{key}", "no such key", f"a value for {key}" if section else f"{key} in the file")
 
 
 def required_keys(cls: type[DataclassInstance]) -> list[str]:

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import hypot
+from math import hypot, radians, sin
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.constants import g as standard_gravity
 
-from ..field import Field, TableField
-from .track import POSITIONS, Track
+from ..field import Field, RotatingField, TableField
+from .climb import way_without_slip_m
+from .sensor import Sensor
+from .track import ANGLES, POSITIONS, Track
 
 if TYPE_CHECKING:
     from .dataset import Dataset
@@ -27,6 +30,16 @@ _MOST_SIZE_M = 0.05
 _MOST_FRICTION = 10.0
 # More than the length of a substrate under a microscope, m.
 _MOST_WAY_M = 1.0
+# Times the robot's weight: on a clean substrate the attraction is of its order.
+_MOST_ATTRACTION = 1e4
+# What no camera around a microscope tells, degrees: one degree in radians is less.
+_LEAST_ANGLE_NOISE_DEG = 0.05
+# Noise of one standard deviation never spreads so many frames less than this share of it, unless all are one number.
+_LEAST_SPREAD, _FEW_FRAMES = 0.3, 10
+# Of a body that tumbles: tilts in radians end just above 1.57, and lie over all between, as those of noise do not.
+_MOST_RAD, _LEAST_RAD, _EVEN = 1.65, 1.2, 0.5
+# Times the way without slip, beside what a slope adds.
+_MOST_SPEED = 20.0
 
 
 def likely_slips(dataset: Dataset) -> tuple[str, ...]:
@@ -58,8 +71,16 @@ def _of_robot(dataset: Dataset) -> Iterator[str]:
     friction = dataset.substrate.friction_coefficient
     if friction > _MOST_FRICTION:
         yield f"friction_coefficient = {friction:.3g} is more than a substrate has: is it force over force?"
-    if any(trial.track is not None for trial in dataset.trials) and sensor.position_noise_m > body.size_m:
+    attraction, weight = dataset.substrate.electrostatic_force_N, robot.total_mass_kg * standard_gravity
+    if attraction > _MOST_ATTRACTION * weight:
+        times = attraction / weight
+        yield f"electrostatic_force_N = {attraction:.3g} is {times:.3g} times the robot's weight: is it in N?"
+    tracks = [trial.track for trial in dataset.trials if trial.track is not None]
+    if tracks and sensor.position_noise_m > body.size_m:
         yield f"position_noise_m = {sensor.position_noise_m:.3g} is more than the robot's own size: is it in m?"
+    turned = any(name in track.channels for track in tracks for name in ANGLES)
+    if turned and sensor.angle_noise_deg < _LEAST_ANGLE_NOISE_DEG:
+        yield f"angle_noise_deg = {sensor.angle_noise_deg:.3g} is finer than a camera tells: is it in degrees?"
 
 
 def _of_trials(dataset: Dataset) -> Iterator[str]:
@@ -74,6 +95,33 @@ def _of_trials(dataset: Dataset) -> Iterator[str]:
     if far:
         most = max(far, key=ways.__getitem__)
         yield f"the track of {most} reaches {ways[most]:.3g} m from its origin: are its positions in m?"
+    for trial in dataset.trials:
+        if trial.track is not None and trial.id not in far:
+            yield from _of_track(trial.id, trial.track, dataset)
+        if isinstance(trial.field, RotatingField) and trial.track is not None and _in_radians(trial.track):
+            yield f"tilt_deg of {trial.id} is between -1.6 and 1.6 while the field turns: is it in degrees?"
+        speed = None if trial.outcome is None else trial.outcome.mean_speed_m_per_s
+        if speed is not None:
+            rolls = way_without_slip_m(dataset.robot, trial.field, trial.duration_s) / trial.duration_s
+            slides = 0.5 * standard_gravity * sin(radians(abs(trial.incline_deg))) * trial.duration_s
+            if abs(speed) > _MOST_SPEED * rolls + slides:
+                beside = f"{speed:.3g}, and rolling without slip makes {rolls:.3g}"
+                yield f"mean_speed_m_per_s of {trial.id} is {beside}: is it in m/s?"
+
+
+def _of_track(id_: str, track: Track, dataset: Dataset) -> Iterator[str]:
+    sensor = dataset.sensor
+    spread, away = _spread_m(track), _begins_away_m(track, sensor)
+    if 0.0 < spread < _LEAST_SPREAD * sensor.position_noise_m:
+        yield (
+            f"the positions of {id_} differ by {spread:.3g} m at most, less than position_noise_m makes of a robot at "
+            "rest: are they in m, is micrometres_per_pixel in µm?"
+        )
+    if away > sensor.origin_tolerance_m + dataset.robot.body().size_m:
+        yield (
+            f"the track of {id_} begins {away:.3g} m from its origin: are x and y from where the robot starts, is "
+            "origin_px that pixel?"
+        )
 
 
 def _strength_T(field: Field) -> float:
@@ -85,3 +133,27 @@ def _strength_T(field: Field) -> float:
 def _way_m(track: Track) -> float:
     seen = [np.abs(track.channels[name]) for name in POSITIONS if name in track.channels]
     return max((float(np.max(column, initial=0.0, where=~np.isnan(column))) for column in seen), default=0.0)
+
+
+def _spread_m(track: Track) -> float:
+    """Return by how much the positions of a track differ at most, 0 of too few frames."""
+    seen = [column[~np.isnan(column)] for name, column in track.channels.items() if name in POSITIONS]
+    return max((float(np.ptp(column)) for column in seen if len(column) >= _FEW_FRAMES), default=0.0)
+
+
+def _begins_away_m(track: Track, sensor: Sensor) -> float:
+    """Return how far along x or y the first frame is from the origin, 0 where it is not from the start or was lost."""
+    if not len(track.time_s) or track.time_s[0] > sensor.clock_tolerance_s(track.frame_interval_s):
+        return 0.0
+    first = [abs(float(track.channels[name][0])) for name in ("x_m", "y_m") if name in track.channels]
+    return max((value for value in first if not np.isnan(value)), default=0.0)
+
+
+def _in_radians(track: Track) -> bool:
+    """Return whether the tilts of a track look like those of a tumbling robot in radians."""
+    tilts = track.channels.get("tilt_deg", np.empty(0))
+    tilts = tilts[~np.isnan(tilts)]
+    if len(tilts) < 3 * _FEW_FRAMES:
+        return False
+    most = float(np.max(np.abs(tilts)))
+    return _LEAST_RAD < most < _MOST_RAD and float(np.sqrt(np.mean(tilts**2))) > _EVEN * most

@@ -167,7 +167,7 @@ def find_fault(time_s: Array, channels: Mapping[str, Array]) -> Fault | None:
     known = np.isfinite([channels[name] for name in QUATERNION])
     for row in np.flatnonzero(known.any(axis=0) & ~known.all(axis=0)):
         name = QUATERNION[int(np.argmin(known[:, row]))]
-        return Fault(int(row), name, "nothing beside the others", "a whole quaternion or none")
+        return Fault(int(row), name, "an empty cell beside the others", "a whole quaternion or none")
     length = _length(channels)
     for row in np.flatnonzero(np.abs(length - 1.0) > _QUATERNION_UNIT):
         return Fault(int(row), "qw", f"a quaternion of length {length[row]:.4g}", "length 1")

@@ -110,8 +110,8 @@ def read_track_csv(key: str, path: Path, name: str, sensor: Sensor) -> TrackFile
     if pixels is not None:
         x, y = (table.numbers(column, _LOST, lost=True) for column in pixels)
         for row in np.flatnonzero(np.isnan(x) != np.isnan(y)):
-            missing = pixels[0] if np.isnan(x[row]) else pixels[1]
-            raise table.refuse(int(row), missing, "nothing beside the other", "both pixels or none")
+            empty, other = pixels if np.isnan(x[row]) else pixels[::-1]
+            raise table.refuse(int(row), empty, f"an empty cell beside one of {other}", "both pixels or none")
         for column, values in zip(pixels, (x, y), strict=True):
             for row in np.flatnonzero(np.abs(values) > MOST_PX):
                 found = show(table.cells[column][row])
