@@ -66,7 +66,7 @@ def found(dataset: Dataset) -> MissingWrench:
 
 def test_a_push_is_recovered_where_the_robot_hops() -> None:
     missing = found(lab(PUSH_N, 1))
-    estimates = [(m[1], s[1]) for label, (m, s) in missing.by_frequency.items() if label in ("10 Hz", "12 Hz")]
+    estimates = [(m.wrench[1], m.sigma[1]) for label, m in missing.by_frequency.items() if label in ("10 Hz", "12 Hz")]
     assert len(estimates) == 2
     weights = np.array([s**-2 for _, s in estimates])
     mean = float(weights @ [m for m, _ in estimates] / weights.sum())
@@ -94,7 +94,7 @@ def test_a_force_that_friction_swallows_stays_unknown() -> None:
     missing = found(lab(0.0, 4, (1.0,)))
     assert (missing.sigma <= missing.prior_sigma * (1.0 + 1e-9)).all()
     # A torque about the substrate's normal turns nothing while friction locks the spin.
-    assert (missing.sigma[:, 5] > 0.5 * missing.prior_sigma[5]).any()
+    assert (missing.sigma[:, 5] > 0.5 * missing.prior_sigma[:, 5]).any()
 
 
 def test_windows_cover_the_tracks() -> None:
@@ -136,12 +136,15 @@ def test_fast_trials_alone_have_their_phases_mapped() -> None:
     missing = found(lab(PUSH_N, 1, (10.0, 12.0)))
     cycles = (missing.end_s - missing.start_s) * np.where(np.array(missing.trials) == "f10", 10.0, 12.0)
     assert np.all(cycles[:-1] > 0.5)
-    assert len(missing.by_phase) == 8
-    force, sigma = (np.array([entry[k][1] for entry in missing.by_phase.values()])[::2] for k in (0, 1))
+    # Of each quarter of the cycle there is one wrench.
+    assert list(missing.by_phase) == ["0–90°", "90–180°", "180–270°", "270–360°"]
+    force, sigma = (
+        np.array([getattr(mean, name)[1] for mean in missing.by_phase.values()]) for name in ("wrench", "sigma")
+    )
     assert np.all(np.abs(force - PUSH_N) < 3.0 * sigma)
     # Where the robot hops a push shows, so that none at all would be refused above; else friction swallows it.
     assert 3.0 * sigma.min() < PUSH_N
-    assert sigma.max() > 0.6 * missing.prior_sigma[1]
+    assert sigma.max() > 0.6 * missing.prior_sigma[0, 1]
 
 
 @pytest.mark.parametrize(("end_s", "most"), [(1.0, 4), (0.37, 12), (2.0, 48)])

@@ -20,6 +20,7 @@ from tumblers.diagnosis.result import (
     RankedHypothesis,
     Region,
     TrialFloor,
+    WrenchMean,
 )
 from tumblers.effects.catalogue import CATALOGUE
 
@@ -97,15 +98,19 @@ def lab(title: str = "cuboid on paper, spring batch", tracks: bool = True) -> Da
     )
 
 
+# The effects that are ranked first.
+LIKELIER = ("stray_field_gradient", "viscous_drag", "substrate_tilt", "friction_coefficient")
+
+
 def wrench() -> MissingWrench:
     prior = np.array([3e-7, 3e-7, 3e-7, 1.3e-9, 1.3e-9, 1.3e-9])
 
-    def averages(labels: list[str], push: list[float]) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    def averages(labels: list[str], push: list[float]) -> dict[str, WrenchMean]:
         found = {}
         for i, (label, f) in enumerate(zip(labels, push, strict=True)):
             sigma = prior * np.array([0.15, 0.05, 0.9, 0.2, 0.95, 0.2])
             value = np.array([1e-9 * (i - 2), f, -2e-9, 2e-11 * (3 - i), 0.0, 1e-11 * i])
-            found[label] = (value, sigma)
+            found[label] = WrenchMean(value, sigma, prior)
         return found
 
     eighths = [f"{45 * i} to {45 * i + 45}°" for i in range(8)]
@@ -116,7 +121,7 @@ def wrench() -> MissingWrench:
         end_s=np.array([0.5, 1.0] * 2),
         wrench=np.tile([0.0, 1.2e-7, 0.0, 0.0, 0.0, 0.0], (n, 1)),
         sigma=np.tile(0.2 * prior, (n, 1)),
-        prior_sigma=prior,
+        prior_sigma=np.tile(prior, (n, 1)),
         by_phase=averages(eighths, [1e-7, 1.1e-7, 0.9e-7, 1.2e-7, 1e-7, 1.05e-7, 0.95e-7, 1e-7]),
         by_mode=averages(["airborne", "line", "surface"], [1.3e-7, 0.8e-7, 0.1e-7]),
         by_place=averages(["0 to 8 mm", "8 to 16 mm", "16 to 24 mm"], [1e-7, 1.1e-7, 1.0e-7]),
@@ -159,6 +164,7 @@ def made(**changes: Any) -> Diagnosis:
             RankedHypothesis(("viscous_drag",), 0.03, 808.0, 1.4, 2.9, 0.8),
             RankedHypothesis(("substrate_tilt",), 0.0, 420.0, 7.9, 9.9, 0.41),
             RankedHypothesis(("friction_coefficient",), 0.0, 130.0, 11.1, None, None),
+            *(RankedHypothesis((name,), 0.0, 90.0, 12.0, None, None) for name in CATALOGUE if name not in LIKELIER),
             RankedHypothesis((), 0.0, 0.0, 15.8, 15.8, 0.0),
         ),
         "gap": Gap(1.0, 16.2, 15.8, 1.1, Interval(0.93, 0.90, 0.95), tuple(ids), by_trial),

@@ -24,6 +24,7 @@ __all__ = [
     "Region",
     "TrialFloor",
     "Verdict",
+    "WrenchMean",
 ]
 
 Verdict = Literal["no_gap", "explained", "unexplained"]
@@ -208,6 +209,25 @@ class HeatMap:
 
 
 @dataclass(frozen=True, eq=False)
+class WrenchMean:
+    """The missing wrench over some of its windows: [Fx, Fy, Fz, Tx, Ty, Tz] in N and N m, substrate frame.
+
+    Attributes
+    ----------
+    wrench
+        The mean, weighted by its uncertainty, shape (6,).
+    sigma
+        Standard deviation of each component, shape (6,).
+    prior_sigma
+        What it is where the data say nothing, shape (6,).
+    """
+
+    wrench: Floats
+    sigma: Floats
+    prior_sigma: Floats
+
+
+@dataclass(frozen=True, eq=False)
 class MissingWrench:
     """The generalized force that must be added along the runs for the nominal model to follow the data.
 
@@ -222,10 +242,10 @@ class MissingWrench:
     sigma
         Standard deviation of each, shape (n, 6).
     prior_sigma
-        What is left where the data say nothing, shape (6,).
+        What is left where the data say nothing, shape (n, 6): a stronger field may lack a greater torque.
     by_phase, by_mode, by_place, by_frequency
-        Averages weighted by their uncertainty: label to (wrench, sigma), each of shape (6,). Where the windows of a
-        trial are longer than half a cycle, phases and modes are of a wrench for each quarter of all its cycles instead.
+        Label to the mean. Where the windows of a trial are longer than half a cycle, phases and modes are of a wrench
+        for each quarter of all its cycles instead. Phases in which the same windows lie are one.
     """
 
     trials: tuple[str, ...]
@@ -234,10 +254,10 @@ class MissingWrench:
     wrench: Floats
     sigma: Floats
     prior_sigma: Floats
-    by_phase: Mapping[str, tuple[Floats, Floats]]
-    by_mode: Mapping[str, tuple[Floats, Floats]]
-    by_place: Mapping[str, tuple[Floats, Floats]]
-    by_frequency: Mapping[str, tuple[Floats, Floats]]
+    by_phase: Mapping[str, WrenchMean]
+    by_mode: Mapping[str, WrenchMean]
+    by_place: Mapping[str, WrenchMean]
+    by_frequency: Mapping[str, WrenchMean]
 
 
 @dataclass(frozen=True)
@@ -277,7 +297,7 @@ class Overlay:
         Of the frames, s, shape (n,).
     measured, nominal, explained
         By channel (``x``, ``y``, ``z`` in m, ``tilt`` and ``heading`` in degrees), shape (n,); with the nuisances
-        fitted.
+        fitted, and but for the heading with the nominal numbers off as they fit best.
     outcomes
         Kind of outcome to (measured, nominal, explained).
     heading_turn_deg

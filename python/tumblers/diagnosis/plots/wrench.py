@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ...plots.style import BLUE, GREEN, ORANGE, axes_or_new, legend_above
 from ..quantity import handy_unit
-from ..result import Floats, MissingWrench
+from ..result import Floats, MissingWrench, WrenchMean
 from .literal import shortened
 
 __all__ = ["By", "Part", "averages", "plot_wrench"]
@@ -36,8 +36,8 @@ _UNKNOWN = 0.7
 _CLEAR = 0.2
 
 
-def averages(missing: MissingWrench, by: By) -> Mapping[str, tuple[Floats, Floats]]:
-    """Return the averages of a missing wrench by label: (wrench, sigma), each of shape (6,)."""
+def averages(missing: MissingWrench, by: By) -> Mapping[str, WrenchMean]:
+    """Return the averages of a missing wrench by label."""
     return {"phase": missing.by_phase, "mode": missing.by_mode, "place": missing.by_place}.get(by, missing.by_frequency)
 
 
@@ -65,13 +65,15 @@ def plot_wrench(missing: MissingWrench, by: By = "phase", part: Part = "force", 
     ax = axes_or_new(ax)
     first, unit, letter = _PARTS[part]
     groups = averages(missing, by)
-    values = np.array([wrench[first : first + 3] for wrench, _ in groups.values()]).reshape(-1, 3)
-    sigmas = np.array([sigma[first : first + 3] for _, sigma in groups.values()]).reshape(-1, 3)
+    mine = slice(first, first + 3)
+    values = np.array([mean.wrench[mine] for mean in groups.values()]).reshape(-1, 3)
+    sigmas = np.array([mean.sigma[mine] for mean in groups.values()]).reshape(-1, 3)
+    unsure = sigmas / np.array([mean.prior_sigma[mine] for mean in groups.values()]).reshape(-1, 3)
     sizes = np.abs(np.concatenate([values, sigmas]))
     factor, written = handy_unit(float(sizes[np.isfinite(sizes)].max(initial=0.0)), unit)
     places = np.arange(len(groups))
     for axis, (colour, marker) in enumerate(zip(_COLOURS, "sov", strict=True)):
-        sure = sigmas[:, axis] < _UNKNOWN * missing.prior_sigma[first + axis]
+        sure = unsure[:, axis] < _UNKNOWN
         for chosen, face in ((sure, colour), (~sure, "white")):
             # One of the two carries the name, though it may have nothing to draw.
             ax.errorbar(
@@ -89,7 +91,7 @@ def plot_wrench(missing: MissingWrench, by: By = "phase", part: Part = "force", 
             )
     reach = np.abs(values) + sigmas
     for share in (_CLEAR, _UNKNOWN):
-        clear = (sigmas < share * missing.prior_sigma[first : first + 3]) & np.isfinite(reach)
+        clear = (unsure < share) & np.isfinite(reach)
         if clear.any():
             # The bars of which the data say less are cut off, so that the others can be read.
             highest = 1.25 * factor * float(reach[clear].max())

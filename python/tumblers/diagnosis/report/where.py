@@ -12,6 +12,7 @@ from ..plots.heat_map import plot_heat_map
 from ..plots.svg import WIDTH_IN, svg_bytes
 from ..plots.wrench import By, averages, plot_wrench
 from ..quantity import percent, plain, sigmas, with_sigma
+from ..result import Floats
 from ..wording.words import region_words
 
 __all__ = ["where_part", "wrench_part"]
@@ -64,18 +65,26 @@ def wrench_part(diagnosis: Diagnosis) -> str:
         for part in ("force", "torque"):
             svg = svg_bytes(lambda f, b=by, p=part: plot_wrench(missing, b, p, f.subplots()), WIDTH_IN, 2.7)  # type: ignore[misc]
             pictures.append(figure(svg, f"Missing {part}: {words.lower()}"))
-        for label, (wrench, sigma) in averages(missing, by).items():
+        for label, mean in averages(missing, by).items():
             units = ["N"] * 3 + ["N m"] * 3
-            cells = [with_sigma(float(w), float(s), unit) for w, s, unit in zip(wrench, sigma, units, strict=True)]
+            cells = [
+                with_sigma(float(w), float(s), unit) for w, s, unit in zip(mean.wrench, mean.sigma, units, strict=True)
+            ]
             rows.append([escape(words), escape(label), *map(escape, cells)])
     heads = ["", "", "Fx", "Fy", "Fz", "Tx", "Ty", "Tz"]
-    force, torque = (float(missing.prior_sigma[i : i + 3].max()) for i in (0, 3))
+    force, torque = _taken(missing.prior_sigma[:, 0], "N"), _taken(missing.prior_sigma[:, 3], "N m")
     words = (
         "The force and the torque (substrate frame) that must be added along the runs for the nominal model to follow "
         "the tracks, with one standard deviation. Before the data they were taken as 0 ± "
-        f"{plain(force, 'N')} and 0 ± {plain(torque, 'N m')}: a hollow marker is an average of which the data say "
+        f"{force} and 0 ± {torque}: a hollow marker is an average of which the data say "
         "little more, such as a force that friction holds. A small arrow at the edge stands for an average beyond it, "
         "for which see the numbers."
     )
     table = data_table(heads, rows, numbers=range(2, 8))
     return text(words, "soft") + grid(pictures) + f"<details><summary>Numbers</summary>{table}</details>\n"
+
+
+def _taken(sigmas_before: Floats, unit: str) -> str:
+    """Return what was assumed of some windows, of which trials in weaker fields may lack less."""
+    low, high = plain(float(sigmas_before.min()), unit), plain(float(sigmas_before.max()), unit)
+    return low if low == high else f"{low} to {high}"

@@ -41,11 +41,11 @@ def mapped(dataset: Dataset, windows: Sequence[Windows], phased: Sequence[Window
         Of the same trials, those that tell phases and contact modes of the cycle.
     """
     labs = dataset.trials
-    phases: dict[str, list[list[int]]] = {}
+    within = [[_at_phase(labs[w.trial].field, w, (b + 0.5) / _PHASES) for w in phased] for b in range(_PHASES)]
+    # Phases that no window tells apart are one.
+    firsts = [b for b in range(_PHASES) if b == 0 or within[b] != within[b - 1]]
     width = 360.0 / _PHASES
-    for b in range(_PHASES):
-        label, centre = f"{b * width:.0f}–{(b + 1) * width:.0f}°", (b + 0.5) * width / 360.0
-        phases[label] = [_at_phase(labs[w.trial].field, w, centre) for w in phased]
+    phases = {f"{first * width:.0f}–{last * width:.0f}°": within[first] for first, last in pairwise([*firsts, _PHASES])}
     places = np.concatenate([w.place_y_m for w in windows])
     ends = np.linspace(places.min(), max(places.max(), places.min() + _LEAST_M), _PLACES + 1)
     ends[-1] = inf
@@ -69,7 +69,7 @@ def mapped(dataset: Dataset, windows: Sequence[Windows], phased: Sequence[Window
         end_s=np.concatenate([w.end_s for w in windows]),
         wrench=np.concatenate([w.wrench for w in windows]),
         sigma=np.concatenate([w.sigma for w in windows]),
-        prior_sigma=np.max([w.prior_sigma for w in windows], axis=0),
+        prior_sigma=np.concatenate([np.tile(w.prior_sigma, (len(w.start_s), 1)) for w in windows]),
         by_phase=means(phased, phases),
         by_mode=means(phased, by_mode),
         by_place=means(windows, by_place),
@@ -91,7 +91,7 @@ def wrench_regions(missing: MissingWrench) -> tuple[Region, ...]:
         Regions on the axes ``missing_force`` and ``missing_torque``. With the mean over each frequency, a share is that
         of the component in ``Σ (w/σ)²``, less what noise gives; `sigmas` is the greatest ``|w/σ|``.
     """
-    scaled = np.array([mean / sigma for mean, sigma in missing.by_frequency.values()])
+    scaled = np.array([mean.wrench / mean.sigma for mean in missing.by_frequency.values()])
     excess = np.maximum(np.sum(scaled**2 - 1.0, axis=0), 0.0)
     clearest, greatest = np.argmax(np.abs(scaled), axis=0), np.max(np.abs(scaled), axis=0)
     averages = list(missing.by_frequency.values())
@@ -99,7 +99,8 @@ def wrench_regions(missing: MissingWrench) -> tuple[Region, ...]:
     for component in np.flatnonzero(greatest > SIGNIFICANT):
         share = float(excess[component] / max(float(excess.sum()), 1e-12))
         axis = "missing_force" if component < 3 else "missing_torque"
-        mean, sigma = (float(values[component]) for values in averages[clearest[component]])
+        at = averages[clearest[component]]
+        mean, sigma = float(at.wrench[component]), float(at.sigma[component])
         value, sigmas = _COMPONENTS[component % 3], float(greatest[component])
         regions.append(Region(axis, share, value=value, sigmas=sigmas, missing=(mean, sigma)))
     return tuple(sorted(regions, key=lambda region: -region.share_of_gap))

@@ -20,6 +20,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..result import WrenchMean
+
 __all__ = ["Windows", "means"]
 
 Floats = NDArray[np.float64]
@@ -64,10 +66,8 @@ class Windows:
         return np.asarray((np.sqrt(np.diag(covariance)) * scale).reshape(-1, 6), dtype=np.float64)
 
 
-def means(
-    windows: Sequence[Windows], groups: Mapping[str, Sequence[Sequence[int]]]
-) -> dict[str, tuple[Floats, Floats]]:
-    """Return the mean wrench over groups of windows and its standard deviation, each of shape (6,).
+def means(windows: Sequence[Windows], groups: Mapping[str, Sequence[Sequence[int]]]) -> dict[str, WrenchMean]:
+    """Return the mean wrench over groups of windows.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def means(
                 precision += a
                 pull += b
         covariance = np.linalg.inv(precision)
-        out[label] = covariance @ pull * scale, np.sqrt(np.diag(covariance)) * scale
+        out[label] = WrenchMean(covariance @ pull * scale, np.sqrt(np.diag(covariance)) * scale, scale)
     return out
 
 

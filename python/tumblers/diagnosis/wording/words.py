@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...effects.catalogue import CATALOGUE
 from ..diagnosis import Diagnosis
 from ..quantity import handy_unit, percent, rounded, sigmas, with_interval, with_sigma
-from ..result import EffectEstimate, Failing, NextTrial, Region
+from ..result import EffectEstimate, Failing, NextTrial, Region, WrenchMean
 from ..where.wrench_maps import SIGNIFICANT
 from .caution import cautions
 from .condition import condition_of, condition_of_table
@@ -278,13 +278,13 @@ def _missing(diagnosis: Diagnosis) -> Iterator[str]:
             yield f"the model lacks a {part} of {size} towards {direction} {_PLACES.get(label, f'at {label}')}."
 
 
-def _strongest(by: Mapping[str, tuple[Floats, Floats]], first: int) -> tuple[str, int, float, float] | None:
+def _strongest(by: Mapping[str, WrenchMean], first: int) -> tuple[str, int, float, float] | None:
     """Return the component of a force or a torque that is farthest from zero, in standard deviations."""
     best: tuple[str, int, float, float] | None = None
     highest = SIGNIFICANT
-    for label, (wrench, sigma) in by.items():
+    for label, mean in by.items():
         for axis in range(3):
-            value, error = float(wrench[first + axis]), float(sigma[first + axis])
+            value, error = float(mean.wrench[first + axis]), float(mean.sigma[first + axis])
             if error > 0.0 and abs(value) > highest * error:
                 best, highest = (label, axis, value, error), abs(value) / error
     return best
