@@ -13,36 +13,7 @@ import pytest
 from tumblers.diagnosis.what import attribute as attribution
 from tumblers.diagnosis.what.contender import Contender
 
-from .lab import NOTHING, coarse_lab
-
-
-def test_what_leads_once_another_counts_as_the_nominal_model_imposes_its_steps(monkeypatch: pytest.MonkeyPatch) -> None:
-    slow, fast = SimpleNamespace(effects=("slow",)), SimpleNamespace(effects=("fast",))
-    resolved, asked = {slow.effects}, []
-
-    def in_steps_of(_: object, leader: Any, made: list[Any], *_rest: object) -> list[Any]:
-        asked.append(leader)
-        resolved.add(leader.effects)
-        return made
-
-    patched: dict[str, Any] = {
-        "Search": lambda *_: SimpleNamespace(contenders=lambda: [slow, fast], names=()),
-        "_nominal_is_right": lambda _: True,
-        "_ranked": lambda made, *_: (made, 1.0),
-        "_flattered": lambda _: [],
-        "by_both_noises": lambda _, ranked, *__: ranked,
-        # The one that led counts as the nominal model.
-        "_with_tolerated": lambda _, made, __: made[::-1],
-        "in_steps_of": in_steps_of,
-        "seen_from_the_best": lambda _, found: found,
-    }
-    for name, instead in patched.items():
-        monkeypatch.setattr(attribution, name, instead)
-    comparison = coarse_lab().comparison
-    monkeypatch.setattr(comparison.simulator, "resolves", lambda effects: effects in resolved)
-    found = attribution.attribute(comparison, [])
-    assert asked == [fast]
-    assert found.contenders == (fast, slow)
+from .lab import NOTHING
 
 
 def made(total: float, *names: str, settled: bool = False) -> Contender:

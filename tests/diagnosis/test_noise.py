@@ -13,6 +13,7 @@ from tumblers.diagnosis.fitting.fitter import Fitter
 from tumblers.diagnosis.fitting.objective import _SHARES
 from tumblers.diagnosis.gap import built_floors
 from tumblers.diagnosis.gap.comparison import Comparison
+from tumblers.diagnosis.gap.floor import SHARED
 from tumblers.diagnosis.gap.job import Job
 from tumblers.diagnosis.gap.pose import Path
 from tumblers.diagnosis.gap.simulator import Simulator
@@ -74,6 +75,19 @@ def test_the_deviation_is_the_root_of_the_covariances_diagonal() -> None:
     comparison.take_noise_of((), shares=[0.0, 0.0])
     alone = comparison.floors[0].deviation("x")
     assert_allclose(alone[seen.found("x")], seen.noise["x"], rtol=1e-9)
+
+
+def test_numbers_that_are_off_move_a_path_by_what_the_residual_takes_for_them() -> None:
+    comparison = compared(with_outcomes())
+    paths = comparison.nominal_paths
+    bare = np.zeros(SHARED)
+    off = np.linspace(-1.0, 1.0, SHARED)
+    residual = comparison.residual(paths, tolerance=bare)
+    for i, floor in enumerate(comparison.floors):
+        apart = residual.trials[i] - comparison.differences(i, paths[i], replace(residual, tolerance=off))
+        moved = [floor.whiten[name] @ floor.shift(name, off)[kept] for name, kept in floor.valid.items()]
+        assert_allclose(np.concatenate(moved), apart[: floor.tracked], rtol=1e-6, atol=1e-9)
+        assert np.abs(apart[: floor.tracked]).max() > 0.1
 
 
 def test_without_the_changes_the_determinant_is_that_of_the_sensor() -> None:

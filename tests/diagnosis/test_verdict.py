@@ -186,6 +186,8 @@ def test_where_nothing_is_likelier_than_the_nominal_model_it_is_right_or_nothing
         ((0.0, -1.0, -2.0), (1.0, 1.0, 1.0), {"field_rolloff", "size_error"}, "field_rolloff"),
         # Not where it leaves a gap in the trials that it was fitted to.
         ((0.0, -1.0, -2.0), (1.0, 1.7, 1.0), {"field_rolloff", "size_error"}, "size_error"),
+        # Nor where it leaves more there than what explains the data may, though less than a nominal model may.
+        ((0.0, -1.0, -2.0), (1.09, 1.0, 1.0), {"viscous_drag", "field_rolloff"}, "field_rolloff"),
         # Evidence of twenty to one is not overruled, nor is anything where none stands.
         ((0.0, -4.0, -5.0), (1.0, 1.0, 1.0), {"field_rolloff"}, "viscous_drag"),
         ((0.0, -1.0, -2.0), (1.0, 1.0, 1.0), set(), "viscous_drag"),
@@ -368,3 +370,15 @@ def test_one_effect_alone_does_not_lead_by_doing_nothing() -> None:
     nothing = of_fit(fitter, fitter.fit(idle, np.zeros(1), evaluations=1))
     ranked, _ = _ranked([nothing, of_nominal(fitter)], fitter.comparison, ["draft_angle"], nominal_is_right=True)
     assert [contender.names for contender in ranked] == [(), ("draft_angle",)]
+
+
+def test_all_is_widened_by_what_the_likeliest_leaves_and_not_by_what_is_vague() -> None:
+    data = measure(plan(PLANS[:1], duration_s=0.3))
+    comparison = Comparison(data, Simulator(data, 1))
+    fitter = Fitter(comparison)
+    nominal = of_nominal(fitter)
+    wrong = replace(nominal, cost=3.0 * comparison.alike * comparison.independent, log_determinant=0.0)
+    # It leaves little of anything against a noise that explains everything.
+    vague = replace(wrong, names=("draft_angle",), cost=0.1, log_determinant=2.0 * wrong.cost)
+    _, dispersion = _ranked([wrong, vague], comparison, ["draft_angle"], nominal_is_right=False)
+    assert dispersion == pytest.approx(3.0 * comparison.alike)

@@ -16,7 +16,7 @@ from .fitting.fitter import Fitter
 from .gap.comparison import Comparison
 from .gap.job import Job
 from .gap.loss import robust_cost
-from .gap.predictive import failings, is_right
+from .gap.predictive import failings, is_explained
 from .how_far.followed import LEAST_FOLLOWED, followed
 from .how_far.held_out import HeldOut, held_out, is_foretold, shrink
 from .how_far.overlay import overlays
@@ -116,7 +116,7 @@ class Conclusion:
             return
         self.attribution, self.measured = seen_from_the_best(self.fitter, before.refusing(behind)), {}
         best = self.measure()[0]
-        held = self.comparison.simulator.resolves(best.effects) and is_right(self.comparison, best.residual)
+        held = self.comparison.simulator.resolves(best.effects) and is_explained(self.comparison, best.residual)
         if not (held and self.stands(best)):
             self.attribution, self.measured, self.comparison.floors = before, measured, floors
 

@@ -6,8 +6,8 @@ The differences of one channel of one trial, at times t, count as drawn from
 Σ = σ² 1 + α² d dᵀ + β² diag(d̂²) + (d̄²/T) min(t_i, t_j) + γ² Σ_p diag(d̂_p²)
 ```
 
-σ is the sensor's noise, d the change of the path when the step is halved, d̂ its greatest size at this frame and the
-next ones (when the body snaps over, a little too early or late is a large difference for a frame), d̄ its root mean
+σ is the sensor's noise, d the change of the path when the step is halved, d̂ its greatest size at this frame and its
+neighbours (when the body snaps over, a little too early or late is a large difference for a frame), d̄ its root mean
 square (a path that has been knocked off its course stays off it: a random walk), T the trial's time, and d_p the change
 with each nominal number moved by its tolerance; α = 2, β = 1, γ = 0.3. Multiplied by the inverse of the Cholesky factor
 of Σ, differences are plain numbers of unit variance; where the walk dominates they are the displacements from frame to
@@ -36,6 +36,7 @@ from scipy.linalg.lapack import dtrtri
 from scipy.ndimage import maximum_filter1d
 
 from ...effects.base import Effect
+from ...scenario import Scenario
 from .job import Edit, Job
 from .nominal_number import NUMBERS, moved_by
 from .pose import Path
@@ -135,9 +136,32 @@ class Floor:
         channel
             One that was measured.
         """
-        out = np.full(len(self.valid[channel]), np.nan)
+        root = np.asarray(np.linalg.inv(self.whiten[channel]), dtype=np.float64)
+        return self._along(channel, np.sqrt(np.sum(root**2, axis=1)))
+
+    def shift(self, channel: str, tolerance: Floats) -> Floats:
+        """Return how far nominal numbers and a step that are off move a channel, m or rad, shape (n,), NaN where lost.
+
+        Parameters
+        ----------
+        channel
+            One that was measured.
+        tolerance
+            How far each is off, as of a residual, shape (`SHARED`,).
+        """
+        before = 0
+        for name, kept in self.valid.items():
+            if name == channel:
+                break
+            before += int(kept.sum())
+        rows = self.tolerance[before : before + int(self.valid[channel].sum())]
         # Σ = L Lᵀ, and L⁻¹ is what whitens.
-        out[self.valid[channel]] = np.linalg.norm(np.linalg.inv(self.whiten[channel]), axis=1)
+        moved = np.linalg.solve(self.whiten[channel], rows @ tolerance)
+        return self._along(channel, np.asarray(moved, dtype=np.float64))
+
+    def _along(self, channel: str, values: Floats) -> Floats:
+        out = np.full(len(self.valid[channel]), np.nan)
+        out[self.valid[channel]] = values
         return out
 
     def beginning(self, frames: int) -> Floor:
@@ -216,34 +240,35 @@ def measure_sensitivity(
     """
     trials = range(len(readers))
     jobs = [Job(i, effects, divisor=divisor) for divisor in (1, 2) for i in trials]
+
     # A small change of a number is seen in twice the step as well.
-    edits = (
-        simulator.coarse,
-        simulator.twice,
-        *(_in_twice(simulator, edit) for edit in moved_by(simulator.dataset.tolerance)),
-    )
+    def twice(scenario: Scenario) -> Scenario:
+        return simulator.twice(scenario, effects)
+
+    moved_numbers = moved_by(simulator.dataset.tolerance)
+    edits = (simulator.coarse, twice, *(_after(twice, edit) for edit in moved_numbers))
     jobs += [Job(i, effects, edit=edit) for i in trials for edit in edits]
     paths = simulator.run(jobs)
     count, first = len(edits), 2 * len(readers)
     out = []
     for i, reader in enumerate(readers):
         here, halved = paths[i], paths[len(readers) + i]
-        coarse, twice, *moved = paths[first + count * i : first + count * (i + 1)]
+        coarse, doubled, *moved = paths[first + count * i : first + count * (i + 1)]
         out.append(
             Sensitivity(
                 _change(reader, here, halved),
                 _outcome_change(reader, here, halved),
                 _change(reader, here, coarse),
                 _outcome_change(reader, here, coarse),
-                [_change(reader, twice, other) for other in moved],
-                [_outcome_change(reader, twice, other) for other in moved],
+                [_change(reader, doubled, other) for other in moved],
+                [_outcome_change(reader, doubled, other) for other in moved],
             )
         )
     return out
 
 
-def _in_twice(simulator: Simulator, edit: Edit) -> Edit:
-    return lambda scenario: edit(simulator.twice(scenario))
+def _after(first: Edit, then: Edit) -> Edit:
+    return lambda scenario: then(first(scenario))
 
 
 def _change(reader: Reader, path: Path | None, other: Path | None) -> dict[str, Floats]:

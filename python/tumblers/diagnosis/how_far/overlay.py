@@ -93,10 +93,17 @@ def _spread(name: str, deviation: Floats, line: dict[str, Floats]) -> Floats:
 
 
 def _read(comparison: Comparison, trial: int, path: Path, held: HeldOut) -> dict[str, Floats]:
-    residual = held.residuals[trial]
-    time = comparison.readers[trial].observed.time_s
-    position, orientation = seen_by(path, time, residual.local[trial], residual.camera)
+    """Return what a model says by channel, its nuisances and the nominal numbers' being off in it."""
+    residual, floor = held.residuals[trial], comparison.floors[trial]
+    seen = comparison.readers[trial].observed
+    position, orientation = seen_by(path, seen.time_s, residual.local[trial], residual.camera)
     axis = body_axis(orientation)
     read = dict(zip("xyz", position.T, strict=True)) | {"tilt": tilt_of(axis), "heading": heading_of(axis)}
-    turn = comparison.readers[trial].observed.heading_turn
-    return {name: _shown(name, values, turn) for name, values in read.items()}
+    for name in floor.valid:
+        # Of an axis that stands upright a heading is off by anything.
+        if name in read and name != "heading":
+            shift = floor.shift(name, residual.tolerance)
+            found = np.isfinite(shift)
+            if found.any():
+                read[name] = read[name] + np.interp(seen.time_s, seen.time_s[found], shift[found])
+    return {name: _shown(name, values, seen.heading_turn) for name, values in read.items()}

@@ -34,7 +34,7 @@ from ..fitting.fitter import Fitter
 from ..gap.comparison import Comparison
 from ..gap.predictive import is_right
 from .both_noises import by_both_noises
-from .contender import Contender, of_fit, of_nominal
+from .contender import Contender, likeliest, of_fit, of_nominal
 from .last_fits import in_steps_of
 from .margins import OPEN, SECOND
 from .occam import log_occam
@@ -195,10 +195,9 @@ def attribute(
         if not compared and resolves(ranked[0].effects):
             contenders, compared = by_both_noises(fitter, ranked, dispersion, tell), True
             continue
-        # What counts as the nominal model leaves the lead to another, whose steps may be shorter again.
-        if right and resolves(ranked[0].effects):
-            ranked = _with_tolerated(fitter, ranked, dispersion)
         if resolves(ranked[0].effects):
+            # The nominal model takes the lead then, or nothing does: it is run in any steps.
+            ranked = _with_tolerated(fitter, ranked, dispersion) if right else ranked
             break
         contenders, compared = in_steps_of(fitter, ranked[0], contenders, seed, tell), False
     return seen_from_the_best(fitter, Attribution(tuple(ranked), dispersion, right, order=tuple(search.names)))
@@ -313,7 +312,8 @@ def _seen(fitter: Fitter, contender: Contender, first: bool) -> Contender:
 def _ranked(
     contenders: Sequence[Contender], comparison: Comparison, effects: Sequence[str], nominal_is_right: bool
 ) -> tuple[list[Contender], float]:
-    dispersion = max(comparison.alike, min(contender.cost for contender in contenders) / comparison.independent)
+    # By the determinant too: what is vague leaves little of anything.
+    dispersion = max(comparison.alike, likeliest(contenders).cost / comparison.independent)
     # One effect alone on the list would be likelier than none before anything is seen, and lead without doing anything.
     listed = max(len(effects), 2)
     prior = {
@@ -332,8 +332,8 @@ def _ranked(
     # Where nothing is likelier by as much, what does nothing would lead. Each by itself: what one is behind another by
     # says nothing of the nominal model.
     nominal = next(c for _, c in scored if not c.names)
-    likeliest = max(c.log_likelihood + 0.5 * c.offset / dispersion for _, c in scored)
-    if not nominal_is_right and likeliest > nominal.log_likelihood - log(REFUSED):
+    highest = max(c.log_likelihood + 0.5 * c.offset / dispersion for _, c in scored)
+    if not nominal_is_right and highest > nominal.log_likelihood - log(REFUSED):
         scored = [(evidence + (0.0 if c.names else log(REFUSED)), c) for evidence, c in scored]
     top = max(evidence for evidence, _ in scored)
     weights = np.exp([evidence - top for evidence, _ in scored])

@@ -53,8 +53,8 @@ def refused(
 ) -> tuple[tuple[str, ...], ...]:
     """Return the names of those that evidence ranks before a tied one, and trials that no fit saw after it.
 
-    Where evidence cannot part hypotheses, what they say of trials left out does: the first that passes the predictive
-    test and stands there leads. Where none does, or the nominal model is among them, none is refused.
+    Where evidence cannot part hypotheses, what they say of trials left out does: the first that may explain the data by
+    the predictive test, and stands there, leads. Where none does, or the nominal model is among them, none is refused.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def refused(
     for contender in contenders:
         if not contender.names or contenders[0].log_evidence - contender.log_evidence >= _TIED:
             return ()
-        if is_right(comparison, contender.residual) and stands(contender):
+        if is_explained(comparison, contender.residual) and stands(contender):
             return tuple(before)
         before.append(contender.names)
     return ()
