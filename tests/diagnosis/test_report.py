@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import re
+import tomllib
 from dataclasses import replace
+from html import unescape
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -13,13 +15,15 @@ import pytest
 from matplotlib.figure import Figure
 
 from tumblers import InputError
+from tumblers.dataset import LabTrial, Outcome
 from tumblers.diagnosis import plots
 from tumblers.diagnosis.diagnosis import FILES, Diagnosis
 from tumblers.diagnosis.report.report import report_html
-from tumblers.diagnosis.result import MissingWrench, Overlay, Region
+from tumblers.diagnosis.result import MissingWrench, Overlay, Region, WrenchMean
 from tumblers.diagnosis.wording.headline import headline
 from tumblers.diagnosis.wording.phrase import title_of
 from tumblers.effects import CATALOGUE
+from tumblers.field import field_from_table
 
 from .example import lab, made, no_gap, outcomes_only, small, wrench
 
@@ -179,9 +183,26 @@ def test_a_missing_wrench_beyond_the_edge_is_marked_there() -> None:
     assert not any("arrow" in str(line.get_marker()) and len(line.get_xdata()) for line in inside.lines)
 
 
-def _far(missing: MissingWrench) -> tuple[np.ndarray, np.ndarray]:
-    value, sigma = missing.by_frequency["10 Hz"]
-    return np.where(np.arange(6) == 2, -9e-7, value), sigma
+def _far(missing: MissingWrench) -> WrenchMean:
+    mean = missing.by_frequency["10 Hz"]
+    return replace(mean, wrench=np.where(np.arange(6) == 2, -9e-7, mean.wrench))
+
+
+def test_what_is_unknown_is_so_by_the_field_of_its_own_trials() -> None:
+    # As unsure as the others, of a field half as strong it is all that was assumed.
+    mean = wrench().by_frequency["10 Hz"]
+    weak = replace(mean, sigma=mean.prior_sigma * 0.5, prior_sigma=mean.prior_sigma * 0.5)
+    for at, hollow in ((weak, 3), (replace(weak, prior_sigma=mean.prior_sigma), 0)):
+        ax = plots.plot_wrench(
+            replace(wrench(), by_frequency={"10 Hz": at}), "frequency", "torque", Figure().subplots()
+        )
+        assert sum(len(line.get_xdata()) for line in ax.lines if line.get_markerfacecolor() == "white") == hollow
+
+
+def test_what_was_assumed_of_a_wrench_is_told_from_the_weakest_to_the_strongest_field() -> None:
+    prior = wrench().prior_sigma * np.array([[1.0], [1.0], [2.0], [2.0]]) ** np.array([0, 0, 0, 1, 1, 1])
+    page = report_html(made(missing_wrench=replace(wrench(), prior_sigma=prior)))
+    assert "0 ± 300 nN and 0 ± 1.3 nN m to 2.6 nN m" in page
 
 
 def test_headings_across_half_a_turn_are_drawn_near_each_other() -> None:
@@ -237,3 +258,11 @@ def test_gaps_are_drawn_in_the_order_of_the_trials() -> None:
     assert [label.get_text() for label in ax.get_yticklabels()] == [trial.id for trial in lab().trials]
     nominal = ax.collections[1].get_offsets()
     assert nominal[6].tolist() == pytest.approx([34.2, 6.0])
+
+
+def test_a_proposed_trial_is_there_to_be_copied(page: str) -> None:
+    (written,) = re.findall(r"<pre>(\[\[trial\]\].*?)</pre>", page, re.DOTALL)
+    (table,) = tomllib.loads(unescape(written))["trial"]
+    (proposed,) = made().next_trials
+    assert table == {"id": "next1", **proposed.trial}
+    LabTrial(**{**table, "field": field_from_table(table["field"], Path()), "outcome": Outcome(climbs=True)})

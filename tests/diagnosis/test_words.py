@@ -26,10 +26,13 @@ from .example import FREQUENCIES, NAN, lab, made, no_gap, outcomes_only
 
 def test_the_verdict_is_one_sentence_a_student_understands() -> None:
     assert headline(made()) == (
-        "The robot is pulled along +y, more at high frequency, seen from 12 Hz up: a stray field gradient of "
+        "The robot is pulled along +y, more at high frequency, mostly seen from 12 Hz up: a stray field gradient of "
         "0.048 ± 0.004 T/m along y, growing with the frequency to the power 2.1 ± 0.5 (stated at 10 Hz) explains 93 % "
-        "of the gap on trials not fitted."
+        "of the gap on trials not fitted; viscous drag would as well."
     )
+    (gradient,) = made().effects
+    for others, said in (((), "trials not fitted."), (("viscous_drag", "x"), "fitted; another effect would as well.")):
+        assert headline(made(effects=(replace(gradient, confounded_with=others),))).endswith(said)
     assert headline(no_gap()) == (
         "No gap: the nominal model explains the data to within noise (1.0 σ, noise alone gives 1.0 σ)."
     )
@@ -129,8 +132,8 @@ def test_of_what_is_tied_and_unlikely_the_headline_does_not_say_that_it_is_so() 
     unsure = replace(gradient, probability=0.19)
     words = headline(made(effects=(unsure,)))
     assert words.startswith(
-        "Either of two effects may be the cause; if the robot is pulled along +y, more at high frequency, seen from "
-        "12 Hz up (probability 19 %), a stray field gradient of 0.048 ± 0.004 T/m along y"
+        "Either of two effects may be the cause; if the robot is pulled along +y, more at high frequency, mostly seen "
+        "from 12 Hz up (probability 19 %), a stray field gradient of 0.048 ± 0.004 T/m along y"
     )
     assert words.endswith("explains 93 % of the gap on trials not fitted.")
     more = replace(unsure, confounded_with=("viscous_drag", "substrate_tilt"))
@@ -412,7 +415,8 @@ def test_why_refitting_the_sensor_may_widen_a_gap_is_said() -> None:
 def test_of_what_refitting_the_camera_closes_no_effect_takes_the_credit() -> None:
     gap = replace(made().gap, before=5.0, after_nuisance_only=2.0, after=1.1)
     assert headline(made(gap=gap)).endswith(
-        "explains 90 % of what the sensor's own slips leave of the gap on trials not fitted, 2.0 σ that become 1.1 σ."
+        "explains 90 % of what refitting the sensor leaves of the gap on trials not fitted, 2.0 σ that become 1.1 σ; "
+        "viscous drag would as well."
     )
     assert "explains 93 % of the gap on trials not fitted" in headline(made())
     # The shrink of 0.3 is the camera's.
@@ -444,3 +448,17 @@ def test_a_tie_that_no_trial_undoes_says_so() -> None:
 def test_a_direction_is_told_where_it_is_not_the_usual_one(axis: tuple[float, float, float], words: str) -> None:
     field = {"kind": "rotating", "strength_T": 0.02, "frequency_Hz": 2.0, "rotation_axis": axis}
     assert condition_of_table({"field": field, "incline_deg": 0.0}) == words
+
+
+def test_of_a_part_of_the_catalogue_it_is_said_that_it_is_one() -> None:
+    few = tuple(hypothesis for hypothesis in made().ranking if hypothesis.gap != 12.0)
+    assert dict(points(made(ranking=few)))["caution"].startswith(f"only 4 of the {len(CATALOGUE)} effects")
+    assert "caution" not in dict(points(made()))
+
+
+@pytest.mark.parametrize(("along_x", "cause"), [((1.1, 1.3), "friction is not the same"), ((0.4, 2.5), "perhaps")])
+def test_friction_is_told_to_depend_on_the_direction_where_the_intervals_say_so(
+    along_x: tuple[float, float], cause: str
+) -> None:
+    numbers = {"e_t_factor": Interval(1.2, *along_x), "e_o_factor": Interval(0.74, 0.64, 0.76)}
+    assert cause in phrase_of(EffectEstimate("friction_anisotropy", 0.7, numbers, ()), lab()).cause

@@ -55,7 +55,8 @@ def assumptions(dataset: Dataset, comparison: Comparison, attribution: Attributi
         f"{_weight(attribution.dispersion)} in probabilities and intervals.",
         f"Tried were {', '.join(tried)}." if tried else "No effect that was tried can be at work in these trials.",
         f"However strong the evidence, {100.0 * LAPSE:.0f} % of the probability belongs to all hypotheses alike; what "
-        "may only say that nominal numbers are off within their tolerances gives its own to the nominal model.",
+        "may only say that nominal numbers are off within their tolerances gives its own to the nominal model, where "
+        "that passes the predictive test.",
         f"A next trial is sought among the likeliest {RIVALS} that are tied, {PARTIAL_RIVALS} where none of them "
         "explains the gap.",
         f"Before anything is fitted, {100.0 * PRIOR[0]:g} % for no gap, {100.0 * PRIOR[1]:g} % for one effect (half of "
@@ -71,8 +72,8 @@ def assumptions(dataset: Dataset, comparison: Comparison, attribution: Attributi
     ]
     if dataset.sensor.tracked_point is None:
         said.append(
-            "Positions are taken to be of the body's centre of mass: the sensor does not say, and so an offset of the "
-            "mass explains them alone, and clearly better than if they are of the centre of the shape."
+            "Positions are taken to be of the body's centre of mass: the sensor does not say, and so the nominal model "
+            "or an offset of the mass alone leaves no gap, and is clearly likelier than with the centre of the shape."
             if sensor.tracked_point == "centre_of_mass"
             else "Positions are taken to be of the centre of the body's shape, for the sensor does not say."
         )
@@ -86,8 +87,8 @@ def assumptions(dataset: Dataset, comparison: Comparison, attribution: Attributi
     if attribution.refused:
         names = ", ".join(" + ".join(effects) for effects in attribution.refused)
         said.append(
-            f"What evidence ranks first as nearly alike, and trials left out refuse, or its own run, which comes no "
-            f"nearer to the data, counts {REFUSED:g} of that beside one of which neither does: {names}."
+            "What evidence ranks first as nearly alike, and the predictive test, trials left out or its own run "
+            f"refuse (it comes no nearer to the data), counts {REFUSED:g} of that beside one that passes: {names}."
         )
     tracks = [trial.track for trial in comparison.dataset.trials if trial.track is not None]
     observed = [reader.observed for reader in comparison.readers]

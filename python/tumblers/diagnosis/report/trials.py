@@ -9,6 +9,7 @@ from math import isfinite
 from ...dataset import LabTrial
 from ...dataset.climb import CLIMBED
 from ...page import data_table, figure, grid, listed, text
+from ...section import write_entry
 from ..diagnosis import Diagnosis
 from ..plots.overlay import plot_overlay
 from ..plots.svg import WIDTH_IN, svg_bytes
@@ -64,8 +65,9 @@ def overlay_part(diagnosis: Diagnosis) -> str:
     )
     words = (
         f"Measured (dots), nominal (dashed) and with the effects (solid), their parameters from {fitted}; the sensor's "
-        "nuisances are fitted in both. The band is what counts as noise, two standard deviations to either side: the "
-        "sensor's, and what the step and the nominal numbers' tolerances leave open."
+        "nuisances and the nominal numbers, within their tolerances, are fitted in both. The band is what counts as "
+        "noise at each frame, two standard deviations to either side: the sensor's, and what step and tolerances leave "
+        "open. Where that is more than the sensor's, neighbouring frames are off alike and count as few."
     )
     return text(words, "soft") + pictures + table
 
@@ -80,7 +82,7 @@ def next_part(diagnosis: Diagnosis) -> str:
     proposed = "".join(_proposal(i + 1, trial) for i, trial in enumerate(diagnosis.next_trials))
     if tied and not proposed:
         proposed = text(f"{NO_TRIAL[:1].upper()}{NO_TRIAL[1:]}")
-    return (listed(tied) or text("No effect of the catalogue is tied with the verdict.")) + proposed
+    return (listed(tied) or text("No effect that was tried is tied with the verdict.")) + proposed
 
 
 def floor_part(diagnosis: Diagnosis) -> str:
@@ -103,7 +105,8 @@ def floor_part(diagnosis: Diagnosis) -> str:
     words = (
         "What the numbers of each trial can at best be compared to, in noise sigmas: numerical, the change of the path "
         "when the step is halved; tolerances, its change with the nominal numbers' tolerances. Both are part of the "
-        "floor, so that they are not taken for physics."
+        "floor, so that they are not taken for physics. Frames are the rows of a track's file, lost those of them "
+        "without the robot; a row that was left out is in neither."
     )
     table = data_table(heads, rows, numbers=(2, 3, 4, 5, 6, 7))
     return text(words, "soft") + table if table else ""
@@ -119,6 +122,8 @@ def _proposal(number: int, proposed: NextTrial) -> str:
         f"<h3>{number}. {escape(condition_of_table(proposed.trial))}</h3>\n"
         + text(f"{reason_words(proposed.why)}. Expected information: {rounded(proposed.information_bits)} bit.")
         + data_table(["if it is", "then it shows"], rows)
+        + "<details><summary>As a trial of dataset.toml, once it has a track or an outcome</summary>"
+        + f"<pre>{escape(write_entry('trial', {'id': f'next{number}', **proposed.trial}))}</pre></details>\n"
     )
 
 

@@ -271,8 +271,8 @@ def _maps(cells: Cells, ids: tuple[str, ...], axes: dict[str, _Axis]) -> tuple[H
     channels = "channel", cells.channel, CHANNELS
     modes = "contact mode", cells.mode, MODES
 
-    def along(name: str, title: str) -> tuple[str, Ints, tuple[str, ...]]:
-        axis = axes[name]
+    def along(name: str, title: str, factor: float = 1.0) -> tuple[str, Ints, tuple[str, ...]]:
+        axis = replace(axes[name], low=factor * axes[name].low, high=factor * axes[name].high)
         return title, np.where(axis.place < _MOST_CELLS, axis.place, -1), axis.labels[:_MOST_CELLS]
 
     wanted = [
@@ -280,7 +280,7 @@ def _maps(cells: Cells, ids: tuple[str, ...], axes: dict[str, _Axis]) -> tuple[H
         (trials, along("time_s", "time, s")),
         (along("frequency_Hz", "frequency, Hz"), along("cycle_phase_deg", "phase of the cycle, °")),
         (modes, channels),
-        (along("position_y_m", "place along y, m"), channels),
+        (along("position_y_m", "place along y, mm", 1e3), channels),
     ]
     maps = []
     for (rows, row, row_labels), (columns, column, column_labels) in wanted:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import isfinite
 
 from ...dataset import likely_slips
+from ...effects.catalogue import CATALOGUE
 from ...effects.parameter import Nuisance
 from ..diagnosis import Diagnosis
 from ..plausible import neutral_values, plausible_ranges, turning_keys
@@ -20,6 +21,8 @@ _UNSURE = 0.8
 # Share of the range within which an estimate counts as being at its end.
 _AT_END = 0.01
 _MANY_LOST = 0.5
+# Share of the catalogue below which what was tried is a choice of the user's, and not what can be at work at all.
+_PART = 0.5
 # What the tolerances leave open of an outcome, in its noise: beyond so much it hardly counts.
 _MUCH_OPEN = 5.0
 # What a lab calls a nuisance that is none of the origin in the picture.
@@ -67,6 +70,12 @@ def _of_effects(diagnosis: Diagnosis) -> list[str]:
             )
         if effect.name == "camera_calibration":
             said.append("a camera that is off is a gap of the measurement: calibrate it before any physics is added.")
+    tried = sum(len(ranked.effects) == 1 for ranked in diagnosis.ranking)
+    if diagnosis.verdict == "explained" and tried < _PART * len(CATALOGUE):
+        said.append(
+            f"only {tried} of the {len(CATALOGUE)} effects of the catalogue {'was' if tried == 1 else 'were'} tried: "
+            "another may explain the gap as well."
+        )
     likeliest = diagnosis.ranking[0]
     if diagnosis.verdict == "no_gap" and likeliest.effects:
         names = " with ".join(title_of(name) for name in likeliest.effects)

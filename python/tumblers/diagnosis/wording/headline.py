@@ -9,7 +9,7 @@ from ..diagnosis import Diagnosis
 from ..how_far.followed import LEAST_FOLLOWED
 from ..quantity import percent, sigmas
 from ..result import Gap
-from .phrase import Phrase, phrase_of
+from .phrase import Phrase, phrase_of, title_of
 
 __all__ = ["CLOSED", "ONE_PERCENT", "gap_words", "headline", "nearer_words", "only_uncertain"]
 
@@ -89,7 +89,11 @@ def _of_causes(diagnosis: Diagnosis, phrases: list[Phrase]) -> str:
         which = f"{alike} effects may be the cause" if len(phrases) == 1 else "other effects may be the causes"
         likely = f"{'probability' if len(shares) == 1 else 'probabilities'} {' and '.join(map(percent, shares))}"
         return f"{which}; if {causes} ({likely}), {amounts}{together} {does}"
-    return f"{causes}: {amounts}{together} {does}"
+    if not tied:
+        return f"{causes}: {amounts}{together} {does}"
+    # What is told first is the likelier one, and still one of several that would do.
+    others = title_of(tied[0]) if len(tied) == 1 and one else "another effect"
+    return f"{causes}: {amounts}{together} {does.rstrip('.')}; {others} would as well."
 
 
 def gap_words(gap: float) -> str:
@@ -108,7 +112,7 @@ def _explained(gap: Gap) -> str:
     if left < _MOSTLY * whole:
         share = "" if left < _SLIPS * whole else f"{percent(_own(gap))} of "
         return (
-            f"{share}what the sensor's own slips leave of the gap on trials not fitted, "
+            f"{share}what refitting the sensor leaves of the gap on trials not fitted, "
             f"{gap_words(gap.after_nuisance_only)} that become {gap_words(gap.after)}"
         )
     return f"{percent(gap.shrink.estimate)} of the gap on trials not fitted"
@@ -140,7 +144,7 @@ def _fitted(diagnosis: Diagnosis) -> float:
 
 
 def _scope(diagnosis: Diagnosis) -> str:
-    """Return at which of the dataset's frequencies the gap shows, where not at all of them."""
+    """Return at which of the dataset's frequencies most of the gap is, where not at all of them."""
     regions = [region for region in diagnosis.where if region.axis == "frequency_Hz"]
     used = sorted({t.field.frequency_Hz for t in diagnosis.dataset.trials if isinstance(t.field, RotatingField)})
     camera = [effect.name for effect in diagnosis.effects] == ["camera_calibration"]
@@ -150,7 +154,7 @@ def _scope(diagnosis: Diagnosis) -> str:
     if low <= used[0] and high >= used[-1]:
         return ""
     if high >= used[-1]:
-        return f", seen from {low:.3g} Hz up"
+        return f", mostly seen from {low:.3g} Hz up"
     if low <= used[0]:
-        return f", seen up to {high:.3g} Hz"
-    return f", seen at {low:.3g} Hz" if low == high else f", seen from {low:.3g} to {high:.3g} Hz"
+        return f", mostly seen up to {high:.3g} Hz"
+    return f", mostly seen at {low:.3g} Hz" if low == high else f", mostly seen from {low:.3g} to {high:.3g} Hz"

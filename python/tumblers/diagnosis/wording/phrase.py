@@ -199,8 +199,10 @@ def _friction(found: _Found) -> Phrase:
 
 
 def _anisotropy(found: _Found) -> Phrase:
+    along_x, along_y = found.interval("e_t_factor"), found.interval("e_o_factor")
+    apart = along_x.high < along_y.low or along_y.high < along_x.low
     return Phrase(
-        "friction is not the same in all directions",
+        f"friction is {'' if apart else 'not as assumed, and perhaps '}not the same in all directions",
         f"friction of {found.text('e_t_factor')} along x and {found.text('e_o_factor')} along y times the nominal one",
     )
 
