@@ -6,6 +6,7 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
+from functools import cache
 from math import inf
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -62,12 +63,11 @@ class Effect(ABC):
             cls.source = " ".join(stated[1].split()).removesuffix(".")
 
     def __post_init__(self) -> None:
-        for f in fields(self):
-            object.__setattr__(self, f.name, self._checked(f.name))
+        for name, mine in _numbers_of(type(self)):
+            object.__setattr__(self, name, self._checked(name, mine))
 
-    def _checked(self, name: str) -> float | tuple[float, ...]:
+    def _checked(self, name: str, mine: Sequence[Parameter]) -> float | tuple[float, ...]:
         value = getattr(self, name)
-        mine = [p for p in self.parameters if p.field == name]
         key = f"{self.name}.{name}"
         if mine[0].key == name:
             return number(key, value, least=mine[0].least, above=mine[0].above)
@@ -124,7 +124,7 @@ class Effect(ABC):
 
     def is_neutral(self) -> bool:
         """Whether the effect changes nothing."""
-        return self.vector() == tuple(p.neutral for p in self.parameters)
+        return self.vector() == _neutral(type(self))
 
     @classmethod
     def ranges(cls, scenario: Scenario) -> tuple[tuple[float, float], ...]:  # noqa: ARG003
@@ -233,8 +233,8 @@ class Effect(ABC):
     def vector(self) -> tuple[float, ...]:
         """Return the values of the parameters, in their order."""
         values: list[float] = []
-        for f in fields(self):
-            value = getattr(self, f.name)
+        for name, _ in _numbers_of(type(self)):
+            value = getattr(self, name)
             values.extend(value if isinstance(value, tuple) else (value,))
         return tuple(values)
 
@@ -265,3 +265,15 @@ class Effect(ABC):
     def to_table(self) -> dict[str, object]:
         """Return the ``[[effect]]`` table that `from_table` reads."""
         return {"name": self.name, **{f.name: getattr(self, f.name) for f in fields(self)}}
+
+
+# A fit makes an effect for each of its points: what is the same for all of a class is looked up once.
+@cache
+def _numbers_of(kind: type[Effect]) -> tuple[tuple[str, tuple[Parameter, ...]], ...]:
+    """Return the names of an effect's fields, each with the parameters that it holds."""
+    return tuple((f.name, tuple(p for p in kind.parameters if p.field == f.name)) for f in fields(kind))
+
+
+@cache
+def _neutral(kind: type[Effect]) -> tuple[float, ...]:
+    return tuple(p.neutral for p in kind.parameters)

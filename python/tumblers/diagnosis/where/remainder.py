@@ -69,9 +69,8 @@ def left_by(comparison: Comparison, residual: Residual, trial: int, path: Path, 
     """
     n, present = nuisance_columns(comparison, residual, trial, path), nuisances_present(comparison, residual, trial)
     weight = np.sqrt(np.minimum(1.0, HUBER / np.maximum(np.abs(values), 1e-12)))[:, None]
-    best = -np.linalg.solve(
-        (n * weight).T @ (n * weight) + np.eye(n.shape[1]), (n * weight).T @ (values * weight[:, 0]) + present
-    )
+    weighed = n * weight
+    best = -np.linalg.solve(weighed.T @ weighed + np.eye(n.shape[1]), weighed.T @ (values * weight[:, 0]) + present)
     off = best + present
     return robust_cost(values + n @ best) + float(off @ off)
 
