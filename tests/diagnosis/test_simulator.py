@@ -16,7 +16,6 @@ from tumblers.diagnosis.gap.simulator import Simulator
 from tumblers.effects.base import Effect
 from tumblers.effects.camera_calibration import CameraCalibration
 from tumblers.effects.center_of_mass_offset import CenterOfMassOffset
-from tumblers.effects.contact_compliance import ContactCompliance
 from tumblers.effects.friction_coefficient import FrictionCoefficient
 from tumblers.effects.magnetization_strength import MagnetizationStrength
 from tumblers.effects.substrate_tilt import SubstrateTilt
@@ -129,16 +128,6 @@ def test_a_scheme_that_is_unstable_in_long_steps_is_run_in_shorter_ones(strength
         assert simulator.run([job])[0] is not None
     simulator.lengthen_steps()
     assert simulator.run([Job(0)])[0] is not None
-
-
-def test_what_asks_for_a_short_step_is_not_looked_at_in_twice_that() -> None:
-    simulator = Simulator(plan(PLANS[:1]), 1)
-    soft, stronger = (ContactCompliance(compliance_m_per_N=0.1),), (MagnetizationStrength(factor=2.0),)
-    simulator.step_s = [ContactCompliance.longest_step_s * 2.0]
-    for effects, times in ((soft, 1.0), (stronger, 2.0), ((), 2.0)):
-        step_s = simulator.scenario(Job(0, effects)).run.fixed_step_s
-        twice = Job(0, effects, edit=lambda scenario, mine=effects: simulator.twice(scenario, mine))  # type: ignore[misc]
-        assert simulator.scenario(twice).run.fixed_step_s == times * step_s
 
 
 def test_a_run_that_is_drawn_to_its_track_stays_near_it_and_is_kept_for_itself() -> None:

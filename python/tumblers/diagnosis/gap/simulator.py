@@ -204,18 +204,16 @@ class Simulator:
         scenario = replace(scenario, model=replace(scenario.model, magnetic_torque=scheme))
         return scenario.at_step(longest_step_s(scenario))
 
-    def twice(self, scenario: Scenario, effects: Sequence[Effect] = ()) -> Scenario:
-        """Return a scenario in twice its step, but no longer than the longest; in its own where effects ask for it.
+    def twice(self, scenario: Scenario) -> Scenario:
+        """Return a scenario in twice its step, but no longer than the longest.
 
         Parameters
         ----------
         scenario
             Any of this dataset's.
-        effects
-            What is added to it.
         """
         step = min(2.0 * scenario.run.fixed_step_s, longest_step_s(scenario))
-        return scenario if any(step > effect.resolving_step_s for effect in effects) else scenario.at_step(step)
+        return scenario.at_step(step)
 
     def lengthen_steps(self) -> None:
         """Take twice the steps, but none that is longer than the longest."""

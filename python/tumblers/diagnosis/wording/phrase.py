@@ -15,8 +15,6 @@ from ..result import EffectEstimate, Interval
 __all__ = ["Phrase", "meaning_of", "phrase_of", "title_of", "unit_of"]
 
 _AXES = "xyz"
-# An interval of 99 % over one of 90 %, of a normal distribution.
-_WIDER = 2.576 / 1.645
 # Of a plausible range.
 _DUST = 1e-4
 
@@ -111,13 +109,6 @@ class _Found:
         low, high = (end if isfinite(end) else found.estimate for end in (found.low, found.high))
         return low > p.neutral + dust or high < p.neutral - dust
 
-    def clearly_off(self, key: str) -> bool:
-        """Whether an interval of 99 % would leave the neutral value out: one in ten of 90 % does by chance."""
-        p, found = next(p for p in _parameters(self.name) if p.key == key), self.numbers[key]
-        nearest = found.low if found.estimate > p.neutral else found.high
-        near = abs(found.estimate - p.neutral) <= _WIDER * abs(found.estimate - nearest)
-        return self.off(key) and not near
-
     def entries(self, key: str) -> list[int]:
         """Which entries of a vector to name: those that are off zero, or the largest."""
         sizes = [abs(self.value(f"{key}[{i}]")) for i in range(3)]
@@ -190,7 +181,7 @@ def _friction(found: _Found) -> Phrase:
     nominal = found.dataset.substrate.friction_coefficient
     more = "more" if found.value("factor") >= 1.0 else "less"
     amount = f"a friction coefficient of {_factor(found, 'factor', nominal, '1')}"
-    if not (found.clearly_off("drift_per_s") or (found.off("drift_per_s") and not found.off("factor"))):
+    if not found.off("drift_per_s"):
         return Phrase(f"there is {more} friction than assumed", amount)
     drift = found.interval("drift_per_s")
     way, sign = ("grows", 100.0) if drift.estimate > 0.0 else ("falls", -100.0)
