@@ -2,18 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
 from tumblers.diagnosis.gap.comparison import Residual
+from tumblers.diagnosis.result import Verdict
 from tumblers.diagnosis.what.attribute import Attribution
 from tumblers.diagnosis.what.contender import Contender
 from tumblers.diagnosis.what.ruled_out import LEAST_ODDS, ruled_out
 from tumblers.diagnosis.what_next.rivals import rivals
 
-ORDER = ("friction_coefficient", "viscous_drag", "size_error", "draft_angle", "substrate_tilt")
+# One more than are sought among.
+ORDER = (
+    "friction_coefficient",
+    "viscous_drag",
+    "size_error",
+    "draft_angle",
+    "substrate_tilt",
+    "field_rolloff",
+    "contact_compliance",
+)
 
 
 def contender(*names: str, log_evidence: float = 0.0) -> Contender:
@@ -46,12 +57,16 @@ def test_what_is_likely_beside_another_is_not_ruled_out_for_being_unlikely_alone
 def test_a_next_trial_is_sought_among_so_many_rivals() -> None:
     others = [contender(name, log_evidence=-1.0) for name in ORDER[1:]]
     tied = {"friction_coefficient": ORDER[1:]}
-    for most, found in ((3, ORDER[:3]), (6, ORDER)):
-        sought = rivals(attribution(CHOSEN, *others), CHOSEN, tied, most)
+    verdicts: tuple[tuple[Verdict, Sequence[str]], ...] = (("unexplained", ORDER[:3]), ("explained", ORDER[:6]))
+    for verdict, found in verdicts:
+        sought = rivals(attribution(CHOSEN, *others), CHOSEN, tied, verdict)
         assert [one.names for one in sought] == [(name,) for name in found]
 
 
 def test_the_rivals_of_a_pair_keep_what_is_not_tied() -> None:
     pair = contender("viscous_drag", "size_error")
     swapped, alone = contender("viscous_drag", "draft_angle"), contender("draft_angle")
-    assert rivals(attribution(pair, alone, swapped), pair, {"size_error": ("draft_angle",)}, 6) == (pair, swapped)
+    assert rivals(attribution(pair, alone, swapped), pair, {"size_error": ("draft_angle",)}, "explained") == (
+        pair,
+        swapped,
+    )

@@ -29,7 +29,7 @@ from .what.ruled_out import ruled_out
 from .what.verdict import judge, refused, ties
 from .what_next.next_trial import in_one_step, next_trials
 from .what_next.posterior import samples
-from .what_next.rivals import PARTIAL_RIVALS, RIVALS, rivals
+from .what_next.rivals import rivals
 from .where.localise import localise
 from .where.wrench import missing_wrench
 from .where.wrench_maps import wrench_regions
@@ -224,7 +224,7 @@ class Conclusion:
         )
 
     def _next(self, chosen: Contender, tied: dict[str, tuple[str, ...]], verdict: Verdict) -> tuple[NextTrial, ...]:
-        between = rivals(self.attribution, chosen, tied, PARTIAL_RIVALS if verdict == "unexplained" else RIVALS)
+        between = rivals(self.attribution, chosen, tied, verdict)
         if len(between) < 2:
             return ()
         hypotheses = []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..result import Verdict
 from ..what.attribute import Attribution
 from ..what.contender import Contender
 
@@ -12,9 +13,9 @@ RIVALS, PARTIAL_RIVALS = 6, 3
 
 
 def rivals(
-    attribution: Attribution, chosen: Contender, tied: dict[str, tuple[str, ...]], most: int
+    attribution: Attribution, chosen: Contender, tied: dict[str, tuple[str, ...]], verdict: Verdict
 ) -> tuple[Contender, ...]:
-    """Return the chosen contender and those that are tied with it, the likeliest first, `most` at most.
+    """Return the chosen contender and the likeliest of those that are tied with it, in their order.
 
     Parameters
     ----------
@@ -24,8 +25,8 @@ def rivals(
         What the verdict is of.
     tied
         For each effect of it those that cannot be told from it.
-    most
-        How many are returned at most, the chosen one among them.
+    verdict
+        On which depends how many are returned at most, the chosen one among them.
     """
     found = [chosen]
     for contender in attribution.contenders:
@@ -34,4 +35,4 @@ def rivals(
             rival = any(set(contender.names) == swapped | {other} for other in others)
             if rival and contender not in found:
                 found.append(contender)
-    return tuple(found[:most])
+    return tuple(found[: PARTIAL_RIVALS if verdict == "unexplained" else RIVALS])
